@@ -179,7 +179,7 @@ fn begun(
         }
     }
     if let Some(learned) = learned {
-        observer = observer.with_learned(learned);
+        observer = observer.with_learned(learned)?;
     }
     Ok((selection, first, observer))
 }

@@ -85,15 +85,6 @@ pub(super) fn learned(inputs: &Inputs, path: &Path, vessel: &Vessel) -> anyhow::
         serde_json::from_str(&text).with_context(|| format!("{shown} is no JSON"))?;
     let learned = serde_json::from_value::<Learned>(document["learned"].clone())
         .with_context(|| format!("{shown} is no file of --learned-out"))?;
-    if learned.version != Learned::VERSION {
-        let version = learned.version;
-        bail!("{shown} has version {version}, this program reads {}: learn again", Learned::VERSION);
-    }
-    if !learned.is_consistent() {
-        bail!("{shown}: names, means and covariance must have matching lengths and be numbers: learn again");
-    }
-    if learned.vessel != vessel.name {
-        bail!("{shown} was learnt on `{}`, and this is `{}`: learn on this one", learned.vessel, vessel.name);
-    }
+    learned.validate(vessel).with_context(|| shown.to_string())?;
     Ok(learned)
 }

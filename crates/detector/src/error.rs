@@ -1,15 +1,35 @@
 //! Everything that can go wrong in this crate.
+use alloc::boxed::Box;
+use cylwatch_estimator::thermal::shown;
 
 /// What went wrong, with the offending value, the bound and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DetectorError {
     /// A setting is out of its bounds.
-    #[error("setting `{setting}` = {value} must be {bound}")]
+    #[error("setting `{setting}` = {} must be {bound}", shown(*.value))]
     Setting {
         /// Name of the setting.
         setting: &'static str,
         /// Its value.
+        value: f64,
+        /// What it must be.
+        bound: &'static str,
+    },
+    /// A setting of an alarm is out of its bounds.
+    #[error("alarm `{alarm}`: {source}")]
+    Alarm {
+        /// Name of the alarm.
+        alarm: &'static str,
+        /// What is wrong with it.
+        source: Box<DetectorError>,
+    },
+    /// A saved state holds what no monitor can have come to.
+    #[error("`{what}` = {} of the saved state must be {bound}: begin without it", shown(*.value))]
+    Restored {
+        /// Name of the value.
+        what: &'static str,
+        /// Its value; of a list the number of its elements.
         value: f64,
         /// What it must be.
         bound: &'static str,

@@ -1,5 +1,6 @@
 //! Everything that can go wrong in this crate.
 use alloc::string::String;
+use cylwatch_thermal::shown;
 
 /// What went wrong, with the offending value, the bound and the remedy.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +46,7 @@ pub enum EstimatorError {
         left: f64,
     },
     /// A setting of the observer is out of its bounds.
-    #[error("observer setting `{setting}` = {value} must be {bound}")]
+    #[error("observer setting `{setting}` = {} must be {bound}", shown(*.value))]
     ObserverSetting {
         /// Name of the setting.
         setting: &'static str,
@@ -324,6 +325,37 @@ pub enum EstimatorError {
         "the snapshot is that of an observer of another cylinder, other sensors or another bank: begin anew"
     )]
     SnapshotForeign,
+    /// A number of a snapshot that no observer can have had.
+    #[error("`{what}` = {} of the snapshot must be {bound}: begin anew", shown(*.value))]
+    SnapshotValue {
+        /// Name of the number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        bound: &'static str,
+    },
+    /// What was learnt is of another version of its format.
+    #[error("what was learnt has version {found}, this program reads {expected}: learn again")]
+    LearnedVersion {
+        /// Version as found.
+        found: u32,
+        /// Version that is read.
+        expected: u32,
+    },
+    /// What was learnt is no mean with its covariance.
+    #[error(
+        "names, means and covariance of what was learnt must have matching lengths and be numbers: learn again"
+    )]
+    LearnedInconsistent,
+    /// What was learnt is of another vessel.
+    #[error("this was learnt on `{learned}`, and this is `{vessel}`: learn on this one")]
+    LearnedForeign {
+        /// Vessel that it was learnt on.
+        learned: String,
+        /// Vessel that it was given for.
+        vessel: String,
+    },
     /// Nothing could be identified.
     #[cfg(feature = "design")]
     #[error(transparent)]

@@ -1,22 +1,22 @@
 //! Everything that can be wrong with the input of this crate, and what its numerics can refuse.
-#[cfg(feature = "files")]
-use crate::document::Problem;
+use crate::problem::Problem;
 use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::string::ToString;
 
-/// A number of a message without the digits that a change of units leaves: 126.192 and not 126.19200000000001.
-fn short(value: &f64) -> String {
-    let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(*value);
-    rounded.to_string()
+/// A number of a message without the digits that a change of units leaves, 126.192 and not 126.19200000000001, and with an exponent
+/// where it would have a row of zeros.
+pub fn shown(value: f64) -> String {
+    let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(value);
+    let plain = rounded == 0.0 || !rounded.is_finite() || (1e-7..1e15).contains(&rounded.abs());
+    if plain { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 /// Errors of the thermal crate. Messages are fragments that name value, bound and remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ThermalError {
-    /// A value of a specification cannot be used.
-    #[cfg(feature = "files")]
+    /// A value of a specification, or of what was made of one, cannot be used.
     #[error("{problem}")]
     Specification {
         /// Path of the value by field names, e.g. `layer[1].thickness_m`.
@@ -101,7 +101,7 @@ pub enum ThermalError {
     /// The temperature is outside the equation's range.
     #[error(
         "temperature {} K of {fluid} must lie between {lowest_k} K and {highest_k} K, the range of its equation of state",
-        short(.temperature_k)
+        shown(*.temperature_k)
     )]
     TemperatureOutside {
         /// Fluid.
@@ -116,7 +116,7 @@ pub enum ThermalError {
     /// The pressure is outside the equation's range.
     #[error(
         "pressure {} Pa of {fluid} must be positive and at most {highest_pa} Pa, the range of its equation of state",
-        short(.pressure_pa)
+        shown(*.pressure_pa)
     )]
     PressureOutside {
         /// Fluid.
@@ -129,7 +129,7 @@ pub enum ThermalError {
     /// The state is on the solid side of the melting line.
     #[error(
         "{fluid} at {} Pa and {} K is solid (melting pressure {melting_pa:.4e} Pa): lower the pressure or raise the temperature",
-        short(.pressure_pa), short(.temperature_k)
+        shown(*.pressure_pa), shown(*.temperature_k)
     )]
     Solid {
         /// Fluid.
@@ -142,7 +142,7 @@ pub enum ThermalError {
         melting_pa: f64,
     },
     /// The density is outside the equation's range.
-    #[error("density {} kg/m3 of {fluid} must be positive and at most {highest_kg_m3:.1} kg/m3", short(.density_kg_m3))]
+    #[error("density {} kg/m3 of {fluid} must be positive and at most {highest_kg_m3:.1} kg/m3", shown(*.density_kg_m3))]
     DensityOutside {
         /// Fluid.
         fluid: &'static str,
@@ -154,7 +154,7 @@ pub enum ThermalError {
     /// A pressure belongs to a density beyond the domain.
     #[error(
         "{fluid} at {} Pa is denser than {highest_kg_m3:.1} kg/m3, the bound of its domain: lower the pressure or raise the temperature",
-        short(.pressure_pa)
+        shown(*.pressure_pa)
     )]
     TooDense {
         /// Fluid.
@@ -200,7 +200,7 @@ pub enum ThermalError {
     #[error(
         "{fluid} at {} Pa and {} K is between its dew line ({dew_pa:.0} Pa) and its bubble line ({bubble_pa:.0} Pa), part vapour and part \
          liquid: only single-phase states are modelled",
-        short(.pressure_pa), short(.temperature_k)
+        shown(*.pressure_pa), shown(*.temperature_k)
     )]
     BetweenDewAndBubble {
         /// Fluid.
@@ -217,7 +217,7 @@ pub enum ThermalError {
     /// An enthalpy or entropy between vapour and liquid.
     #[error(
         "{fluid} at {} Pa is two-phase at its boiling temperature {saturation_k:.3} K: only single-phase states are modelled",
-        short(.pressure_pa)
+        shown(*.pressure_pa)
     )]
     TwoPhaseIsobar {
         /// Fluid.
@@ -230,7 +230,7 @@ pub enum ThermalError {
     /// Pressure and temperature on the saturation line do not fix the density.
     #[error(
         "{fluid} at {} Pa and {} K is on its saturation line ({} Pa): pressure and temperature do not fix the density",
-        short(.pressure_pa), short(.temperature_k), short(.saturation_pa)
+        shown(*.pressure_pa), shown(*.temperature_k), shown(*.saturation_pa)
     )]
     OnSaturation {
         /// Fluid.
@@ -245,7 +245,7 @@ pub enum ThermalError {
     /// Too near the critical point.
     #[error(
         "{fluid} at {temperature_k:.3} K is within 0.5 % below its critical temperature {} K, where its phase is not resolved: stay outside",
-        short(.critical_k)
+        shown(*.critical_k)
     )]
     NearCritical {
         /// Fluid.
@@ -258,7 +258,7 @@ pub enum ThermalError {
     /// No temperature has the energy.
     #[error(
         "no temperature gives {fluid} at {} kg/m3 the internal energy {} J/kg",
-        short(.density_kg_m3), short(.energy_j_kg)
+        shown(*.density_kg_m3), shown(*.energy_j_kg)
     )]
     NoTemperature {
         /// Fluid.
@@ -271,7 +271,7 @@ pub enum ThermalError {
     /// No state on an isobar.
     #[error(
         "no state of {fluid} at {} Pa inside the domain has the {property} {} (SI)",
-        short(.pressure_pa), short(.target)
+        shown(*.pressure_pa), shown(*.target)
     )]
     NoState {
         /// Fluid.

@@ -34,6 +34,7 @@
 #[macro_use]
 extern crate alloc;
 
+mod bounds;
 mod cache;
 #[cfg(feature = "files")]
 pub mod document;
@@ -42,6 +43,7 @@ pub mod flow;
 pub mod fluid;
 #[cfg(feature = "simulate")]
 pub mod model;
+mod problem;
 pub mod real;
 pub mod reduced;
 #[cfg(feature = "simulate")]
@@ -56,7 +58,7 @@ pub mod units;
 pub mod vessel;
 pub mod wall;
 
-pub use error::ThermalError;
+pub use error::{ThermalError, shown};
 
 /// The code of the README, so that it is compiled and run.
 #[cfg(doctest)]

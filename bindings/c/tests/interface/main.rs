@@ -4,6 +4,8 @@
 #![allow(clippy::undocumented_unsafe_blocks, clippy::unwrap_used)]
 mod header;
 mod memory;
+#[path = "../../../../crates/detector/tests/suite/mutation.rs"]
+mod mutation;
 mod mutations;
 mod refused;
 mod replayed;

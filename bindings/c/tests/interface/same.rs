@@ -72,22 +72,7 @@ fn nan() -> u64 {
 }
 
 fn wanted_reason(verdict: Verdict) -> u64 {
-    let order = [
-        Reason::Learning,
-        Reason::Filling,
-        Reason::NoPressure,
-        Reason::NoTemperature,
-        Reason::Gap,
-        Reason::Jump,
-        Reason::Settling,
-        Reason::Disturbed,
-        Reason::Stuck,
-        Reason::Clock,
-        Reason::Restarted,
-        Reason::Suspected,
-        Reason::Empty,
-    ];
-    verdict.reason().map_or(0, |reason| 1 + order.iter().position(|one| *one == reason).unwrap() as u64)
+    verdict.reason().map_or(0, |reason| 1 + Reason::ALL.iter().position(|one| *one == reason).unwrap() as u64)
 }
 
 fn wanted_health(health: Option<&Health>) -> [u64; 2] {

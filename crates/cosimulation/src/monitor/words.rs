@@ -120,22 +120,7 @@ mod tests {
             assert_eq!(word(&VERDICT, verdict(one)), one.as_str().replace(' ', "_"));
         }
         assert_eq!(word(&VERDICT, verdict(Verdict::Unknown(Reason::Gap))), "unknown");
-        for number in 2..=14 {
-            let of = [
-                Reason::Learning,
-                Reason::Filling,
-                Reason::NoPressure,
-                Reason::NoTemperature,
-                Reason::Gap,
-                Reason::Jump,
-                Reason::Settling,
-                Reason::Disturbed,
-                Reason::Stuck,
-                Reason::Clock,
-                Reason::Restarted,
-                Reason::Suspected,
-                Reason::Empty,
-            ][number - 2];
+        for (of, number) in Reason::ALL.into_iter().zip(2..) {
             assert_eq!(usize::from(reason(Some(of))), number);
             let debug = format!("{of:?}").to_lowercase();
             assert_eq!(REASON.items[number - 1].0.replace('_', ""), debug);

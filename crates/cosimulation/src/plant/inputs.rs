@@ -191,19 +191,10 @@ pub(super) fn step(inputs: &[InputOf], values: &[f64], duration_s: f64) -> Scena
 
 /// The flows that are not zero.
 fn flows(value: &dyn Fn(InputOf) -> f64) -> Vec<Flow> {
-    let flow = |name: &str, kind| Flow {
-        name: name.to_owned(),
-        kind,
-        start_s: 0.0,
-        stop_s: f64::INFINITY,
-        opens_above_pa: None,
-        closes_below_pa: None,
-        closes_above_pa: None,
-    };
     let held = |input| Series::constant(value(input));
     let mut flows = Vec::new();
     if value(InputOf::Leak) > 0.0 {
-        flows.push(flow("leak", FlowKind::LeakSeries { mass_flow_kg_s: held(InputOf::Leak) }));
+        flows.push(Flow::open("leak", FlowKind::LeakSeries { mass_flow_kg_s: held(InputOf::Leak) }));
     }
     if value(InputOf::LeakBore) > 0.0 {
         let kind = FlowKind::Orifice {
@@ -211,7 +202,7 @@ fn flows(value: &dyn Fn(InputOf) -> f64) -> Vec<Flow> {
             discharge_coefficient: DISCHARGE_COEFFICIENT,
             back_pressure_pa: ATMOSPHERE_PA,
         };
-        flows.push(flow("hole", kind));
+        flows.push(Flow::open("hole", kind));
     }
     if value(InputOf::Refill) > 0.0 {
         let source = Source::Supply {
@@ -219,7 +210,10 @@ fn flows(value: &dyn Fn(InputOf) -> f64) -> Vec<Flow> {
             pressure_pa: held(InputOf::RefillPressure),
         };
         let mass_flow_kg_s = held(InputOf::Refill);
-        flows.push(flow("refill", FlowKind::RefillSeries { mass_flow_kg_s, source, inlet_diameter_m: None }));
+        flows.push(Flow::open(
+            "refill",
+            FlowKind::RefillSeries { mass_flow_kg_s, source, inlet_diameter_m: None },
+        ));
     }
     flows
 }

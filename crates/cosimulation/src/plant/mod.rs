@@ -70,8 +70,12 @@ pub(crate) struct SavedCourse {
 
 impl Plant {
     /// # Errors
-    /// A sensor has no place on the vessel, or the fill is no state of the gas.
+    /// A value of vessel or sensors is out of its bounds, a sensor has no place on the vessel, or the fill is no state of the gas.
     pub(crate) fn new(compiled: CompiledPlant) -> Result<Self, CosimulationError> {
+        compiled.vessel.validate()?;
+        for (i, sensor) in compiled.sensors.iter().enumerate() {
+            sensor.validate(&format!("sensor {}", i + 1))?;
+        }
         let at_once = |sensor: &Sensor| {
             let mut ideal = sensor.ideal();
             ideal.lag_s = 0.0;

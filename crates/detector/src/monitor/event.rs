@@ -2,7 +2,9 @@
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
+use super::restored::Restored;
 use super::{Health, LeakFinding, Verdict};
+use crate::DetectorError;
 
 /// Something that happened.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -78,6 +80,26 @@ pub enum EventKind {
 }
 
 impl Event {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self, of: &Restored) -> Result<(), DetectorError> {
+        let sensors = match self.kind {
+            EventKind::Sensor { sensor, .. } | EventKind::Late { sensor, .. } => [sensor; 2],
+            EventKind::Swapped(sensors) | EventKind::Disturbed { sensors, .. } => sensors,
+            EventKind::Verdict { .. }
+            | EventKind::LeakFound(_)
+            | EventKind::LeakEnded
+            | EventKind::Discharge(_)
+            | EventKind::Refill(_)
+            | EventKind::ColdNight(_)
+            | EventKind::FillingDoubted { .. }
+            | EventKind::ClockJump(_)
+            | EventKind::Gap(_)
+            | EventKind::TooLate
+            | EventKind::Restarted => return Ok(()),
+        };
+        sensors.into_iter().try_for_each(|sensor| of.sensor("events", sensor))
+    }
+
     /// An event of this sample that began then, s.
     pub fn new(time_s: f64, onset_s: f64, kind: EventKind) -> Self {
         Self { time_s, onset_s, kind }

@@ -32,6 +32,7 @@ pub mod intake;
 mod median;
 mod output;
 pub mod readings;
+mod restored;
 mod roles;
 pub mod settings;
 mod step;

@@ -95,8 +95,10 @@ impl MonitorSettings {
     /// # Errors
     /// Names the setting, its value and the bound.
     pub fn validate(&self) -> Result<(), DetectorError> {
+        self.observer.validate()?;
         self.intake.validate()?;
         self.reaction.validate()?;
+        self.alarms.validate()?;
         self.tails.as_ref().map_or(Ok(()), Tails::validate)?;
         for (setting, value) in [
             ("false_alarm_interval_s", self.false_alarm_interval_s),

@@ -76,6 +76,23 @@ impl Verdict {
 }
 
 impl Reason {
+    /// All, in the order in which interfaces number them.
+    pub const ALL: [Self; 13] = [
+        Self::Learning,
+        Self::Filling,
+        Self::NoPressure,
+        Self::NoTemperature,
+        Self::Gap,
+        Self::Jump,
+        Self::Settling,
+        Self::Disturbed,
+        Self::Stuck,
+        Self::Clock,
+        Self::Restarted,
+        Self::Suspected,
+        Self::Empty,
+    ];
+
     /// Words for a person.
     pub fn as_str(self) -> &'static str {
         match self {

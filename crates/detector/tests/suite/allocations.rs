@@ -11,8 +11,22 @@ use rand_chacha::ChaCha8Rng;
 
 const DAY_S: f64 = 86_400.0;
 
+/// What may happen to a cylinder.
+pub(crate) const HAPPENS: [&str; 10] = [
+    "nothing",
+    "leak",
+    "discharge",
+    "refill",
+    "spikes",
+    "transmitter",
+    "thermometer",
+    "missing",
+    "stuck",
+    "swapped",
+];
+
 /// Mass, kg, and readings of a cylinder in slow weather at a time, s, with what may happen to one.
-fn row(contents: &Contents, rng: &mut ChaCha8Rng, time_s: f64, happens: &str) -> [f64; 3] {
+pub(crate) fn row(contents: &Contents, rng: &mut ChaCha8Rng, time_s: f64, happens: &str) -> [f64; 3] {
     let hour = time_s / 3600.0;
     let gas_k = 285.0 + 6.0 * (hour / 24.0 * core::f64::consts::TAU).sin();
     let since_h = (hour - 30.0).max(0.0);
@@ -49,18 +63,7 @@ fn whatever_happens_no_row_and_no_saved_state_allocates() {
     let sensors = ["shoulder", "valve", "pressure"].map(|name| Sensor::typical(name).unwrap());
     let filled = Commissioning::filled(200e5, 288.15);
     let (mut verdicts, mut room) = (Vec::new(), vec![0; 32 << 10]);
-    for happens in [
-        "nothing",
-        "leak",
-        "discharge",
-        "refill",
-        "spikes",
-        "transmitter",
-        "thermometer",
-        "missing",
-        "stuck",
-        "swapped",
-    ] {
+    for happens in HAPPENS {
         let mut rng = ChaCha8Rng::seed_from_u64(7);
         let mut monitor = Monitor::new(&vessel, &sensors, &filled, &MonitorSettings::default()).unwrap();
         let (mut time_s, mut clock_s, mut verdict) = (0.0, 0.0, Verdict::Tight);

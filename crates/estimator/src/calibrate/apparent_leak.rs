@@ -116,15 +116,7 @@ fn of_leak(
     let trial_kg_s = TRIAL_LOSS * mass_kg / scenario.duration_s.max(1.0);
     let leaking = |mass_flow_kg_s: f64| {
         let mut scenario = scenario.clone();
-        scenario.flows.push(Flow {
-            name: "apparent leak".into(),
-            kind: FlowKind::Leak { mass_flow_kg_s },
-            start_s: 0.0,
-            stop_s: f64::INFINITY,
-            opens_above_pa: None,
-            closes_below_pa: None,
-            closes_above_pa: None,
-        });
+        scenario.flows.push(Flow::open("apparent leak", FlowKind::Leak { mass_flow_kg_s }));
         (vessel.clone(), scenario)
     };
     let neighbours = Neighbours { below: leaking(0.5 * trial_kg_s), above: leaking(1.5 * trial_kg_s) };

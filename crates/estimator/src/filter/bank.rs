@@ -411,23 +411,23 @@ impl<P: Plant> Bank<P> {
         }
     }
 
-    /// Whether it has members with these hypotheses, and so many states and outputs.
-    pub(crate) fn is_like(&self, hypotheses: &[P::Hypothesis], states: usize, outputs: usize) -> bool {
-        if self.members.is_empty() {
-            // Before the first sample there are none.
-            return true;
-        }
+    /// Whether it is a bank of this plant, whose members have these hypotheses.
+    pub(crate) fn is_like(&self, plant: &P, hypotheses: &[P::Hypothesis]) -> bool {
+        // Before the first sample there are no members.
+        let begun = !self.members.is_empty();
         let members = self.members.iter().zip(hypotheses).all(|(member, hypothesis)| {
-            member.hypothesis == *hypothesis && member.x.len() == states && member.has_outputs(outputs)
+            let sizes = member.x.len() == plant.states() && member.has_outputs(plant.outputs());
+            member.hypothesis == *hypothesis && sizes
         });
         let packs = match &self.covariances {
             Covariances::Packs(packs) => {
-                packs.len() == hypotheses.len().div_ceil(Pack::SIZE)
-                    && packs.iter().all(|pack| pack.bank.states() == states)
+                let of_packs = hypotheses.chunks(Pack::SIZE).map(<[_]>::len);
+                (packs.len() == of_packs.len() || !begun)
+                    && packs.iter().zip(of_packs).all(|(pack, members)| pack.is_like(plant, members))
             }
-            Covariances::Singles(_) => false,
+            Covariances::Singles(_) => !begun,
         };
-        members && packs && self.members.len() == hypotheses.len()
+        members && packs && (self.members.len() == hypotheses.len() || !begun)
     }
 
     /// Mean and variance of a state, member by member.

@@ -99,9 +99,9 @@ impl UdBank {
         Self { filters: filters.clamp(1, LANES), ..self }
     }
 
-    /// Number of states.
-    pub(crate) fn states(&self) -> usize {
-        self.n
+    /// Whether it is of so many states, moving states and filters.
+    pub(crate) fn is_like(&self, states: usize, leading: usize, filters: usize) -> bool {
+        [self.n, self.leading, self.filters] == [states, leading, filters]
     }
 
     /// Let a lane have the covariance of `factors`, of as many states.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Observer;
 use super::clock::Clock;
 use super::cylinder::Cylinder;
+use crate::EstimatorError;
 use crate::filter::{Outline, StateSpace};
 use crate::thermal::reduced::WarmStart;
 
@@ -19,7 +20,27 @@ pub struct Checkpoint {
     warm_start: WarmStart,
 }
 
+impl Checkpoint {
+    /// Time of the sample that it was taken after, s.
+    pub fn time_s(&self) -> Option<f64> {
+        self.clock.time_s
+    }
+}
+
 impl Observer {
+    /// Checks a checkpoint that comes from elsewhere, such as a file.
+    ///
+    /// # Errors
+    /// It is that of an observer of another cylinder, other sensors or another bank, or no observer's.
+    pub fn validate_checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), EstimatorError> {
+        let fits = checkpoint.bank.is_like(self.cylinder.states(), self.roles.members)
+            && self.cylinder.model().fits_warm_start(&checkpoint.warm_start);
+        if !fits {
+            return Err(EstimatorError::SnapshotForeign);
+        }
+        checkpoint.clock.validate(self.cylinder.outputs())
+    }
+
     /// What to [begin an exchange from](Self::begin_exchange_from) later.
     pub fn checkpoint(&self) -> Checkpoint {
         let mut checkpoint = self.room_for_checkpoint();

@@ -3,6 +3,7 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::screen::Screen;
+use crate::EstimatorError;
 use crate::sensor::Sensor;
 
 /// Times that the observer keeps.
@@ -58,6 +59,25 @@ impl Clock {
             restarts: 0,
             screens: sensors.iter().map(Screen::new).collect(),
             pulled_until_s: f64::INFINITY,
+        }
+    }
+
+    /// Checks one that comes from elsewhere.
+    ///
+    /// # Errors
+    /// It is of another number of sensors, or a number is one that bounds and intervals cannot be made of.
+    pub(super) fn validate(&self, sensors: usize) -> Result<(), EstimatorError> {
+        let Self { last_reading_s, loosened, last_reading, screens, .. } = self;
+        if [last_reading_s.len(), loosened.len(), last_reading.len(), screens.len()] != [sensors; 4] {
+            return Err(EstimatorError::SnapshotForeign);
+        }
+        let wrong = |what, value, bound| Err(EstimatorError::SnapshotValue { what, value, bound });
+        if let Some(value) = self.time_s.filter(|time_s| !time_s.is_finite()) {
+            return wrong("time_s", value, "finite");
+        }
+        match self.loosened.iter().find(|sd| !(**sd >= 0.0 && sd.is_finite())) {
+            Some(value) => wrong("loosened", *value, "finite and at least 0"),
+            None => Ok(()),
         }
     }
 

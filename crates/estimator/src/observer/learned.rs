@@ -6,6 +6,8 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::states::States;
+use crate::EstimatorError;
+use crate::thermal::vessel::Vessel;
 
 /// Constants with their joint uncertainty: film and capacity multipliers, offsets, couplings, coefficients. Plain data.
 ///
@@ -40,20 +42,29 @@ impl Learned {
         }
     }
 
-    /// Whether the lengths fit and every number is one.
-    pub fn is_consistent(&self) -> bool {
+    /// Checks what another program has learnt of a vessel.
+    ///
+    /// # Errors
+    /// It is of another version or another vessel, lengths do not fit, or a number is none.
+    pub fn validate(&self, vessel: &Vessel) -> Result<(), EstimatorError> {
+        let (found, expected) = (self.version, Self::VERSION);
+        if found != expected {
+            return Err(EstimatorError::LearnedVersion { found, expected });
+        }
         let k = self.names.len();
-        self.version == Self::VERSION
-            && self.mean.len() == k
-            && self.covariance.len() == k * k
-            && self.mean.iter().chain(&self.covariance).all(|value| value.is_finite())
+        let numbers = self.mean.iter().chain(&self.covariance).all(|value| value.is_finite());
+        if !(self.mean.len() == k && Some(self.covariance.len()) == k.checked_mul(k) && numbers) {
+            return Err(EstimatorError::LearnedInconsistent);
+        }
+        if self.vessel != vessel.name {
+            let (learned, vessel) = (self.vessel.clone(), vessel.name.clone());
+            return Err(EstimatorError::LearnedForeign { learned, vessel });
+        }
+        Ok(())
     }
 
     /// Overwrite mean and covariance of the states that were learnt; states without a counterpart keep their prior.
     pub(super) fn put_into(&self, names: &[String], mean: &mut [f64], covariance: &mut DMatrix<f64>) {
-        if !self.is_consistent() {
-            return;
-        }
         let at: Vec<Option<usize>> =
             self.names.iter().map(|name| names.iter().position(|other| other == name)).collect();
         let k = at.len();

@@ -214,10 +214,14 @@ impl Observer {
     }
 
     /// Start with what an observer of the same cylinder has learnt; before the first sample.
-    pub fn with_learned(mut self, learned: Learned) -> Self {
+    ///
+    /// # Errors
+    /// As [`Learned::validate`].
+    pub fn with_learned(mut self, learned: Learned) -> Result<Self, EstimatorError> {
+        learned.validate(&self.vessel)?;
         self.learned = Some(learned);
         self.learned_prior = Some(self.prior.clone());
-        self
+        Ok(self)
     }
 
     /// Begin anew with the next sample, with nothing learnt.
@@ -281,7 +285,7 @@ impl Observer {
         {
             return Ok(false);
         }
-        self.clock.restarts += 1;
+        self.clock.restarts = self.clock.restarts.saturating_add(1);
         self.start(time_s, readings)?;
         Ok(true)
     }

@@ -84,7 +84,7 @@ impl Screen {
             return None;
         }
         if reading < self.limits.low || reading > self.limits.high {
-            self.count.implausible += 1;
+            self.count.implausible = self.count.implausible.saturating_add(1);
             return Some(Fault::Implausible);
         }
         if reading == self.latest {
@@ -94,7 +94,7 @@ impl Screen {
         }
         // A sensor without noise of its own tells nothing by standing still.
         if self.in_a_row >= STUCK_READINGS && self.limits.pull > 0.0 && self.pulled.abs() > self.limits.pull {
-            self.count.stuck += 1;
+            self.count.stuck = self.count.stuck.saturating_add(1);
             return Some(Fault::Stuck);
         }
         None

@@ -5,6 +5,7 @@
 //! white noise of its actual size trusts its parameters too much. So the noise of the outputs is stated too large, grows with
 //! the temperature differences that the reduced model resolves worst, and what is learnt fades.
 use alloc::vec::Vec;
+use core::ops::RangeInclusive;
 use cylwatch_thermal::units::{DAY_S, HOUR_S};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,11 @@ use crate::log::Quantity;
 use crate::sensor::{Parameter, ParameterKind};
 
 const PER_HOUR: f64 = 1.0 / 3600.0;
+/// Most wall nodes, and most members of a bank: what a step can bear.
+const WALL_NODES_MAX: usize = 64;
+const MEMBERS_MAX: usize = 32;
+/// Nominal outside films, W/(m² K).
+const FILMS_W_M2_K: RangeInclusive<f64> = 0.1..=1e4;
 
 /// Random walk or, with a `memory_s`, Ornstein-Uhlenbeck process `dx/dt = -x/memory + w`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -366,11 +372,14 @@ impl ObserverSettings {
         };
         self.engine.validate()?;
         self.band.validate()?;
-        require(self.wall_nodes > 0, "wall_nodes", self.wall_nodes as f64, "at least 1")?;
-        require(!self.bank.is_empty(), "bank", 0.0, "at least one member")?;
-        positive("film_w_m2_k", self.film_w_m2_k)?;
+        let (nodes, members) = (self.wall_nodes, self.bank.len());
+        require((1..=WALL_NODES_MAX).contains(&nodes), "wall_nodes", nodes as f64, "between 1 and 64")?;
+        require((1..=MEMBERS_MAX).contains(&members), "bank", members as f64, "of 1 to 32 members")?;
+        let film = FILMS_W_M2_K.contains(&self.film_w_m2_k);
+        require(film, "film_w_m2_k", self.film_w_m2_k, "between 0.1 and 10000")?;
         positive("air_rest_k", self.air_rest_k)?;
-        positive("longest_step_s", self.longest_step_s)?;
+        let step_s = self.longest_step_s;
+        require(step_s >= 1.0 && step_s.is_finite(), "longest_step_s", step_s, "at least 1 s")?;
         positive("coupling_memory_s", self.coupling_memory_s.unwrap_or(1.0))?;
         positive("constants_memory_s", self.constants_memory_s.unwrap_or(1.0))?;
         positive("gate_sd", self.gate_sd)?;

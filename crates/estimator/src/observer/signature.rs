@@ -115,7 +115,8 @@ impl Onsets {
 
     /// Whether it is of a member with so many states.
     pub(super) fn is_like(&self, states: usize) -> bool {
-        self.responses.len() == self.sums.len() * states
+        self.sums.len() <= ONSETS_AT_MOST
+            && self.responses.len() == self.sums.len() * states
             && (self.compensated.len() == states || self.sums.is_empty() && self.compensated.is_empty())
     }
 

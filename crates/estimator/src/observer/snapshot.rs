@@ -20,6 +20,13 @@ pub struct Snapshot {
     pub(super) warm_start: WarmStart,
 }
 
+impl Snapshot {
+    /// Time of the sample that it was taken after, s; `None`: before the first one.
+    pub fn time_s(&self) -> Option<f64> {
+        self.clock.time_s
+    }
+}
+
 /// The same where it is, to be serialised without a copy.
 #[derive(Clone, Debug, Serialize)]
 pub struct SnapshotRef<'a> {
@@ -86,18 +93,16 @@ impl Observer {
     /// Back to a snapshot that comes from elsewhere, such as a file.
     ///
     /// # Errors
-    /// It is that of an observer of another cylinder, other sensors or another bank; this one stays as it was.
+    /// It is that of an observer of another cylinder, other sensors or another bank, or no observer's; this one stays as it was.
     pub fn try_restore(&mut self, snapshot: &Snapshot) -> Result<(), EstimatorError> {
-        let (states, sensors) = (self.cylinder.states(), self.cylinder.outputs());
-        let clock = &snapshot.clock;
-        let fits =
-            snapshot.bank.is_like(&self.cylinder.settings().bank[..self.roles.members], states, sensors)
-                && snapshot.onsets.is_like(states)
-                && [clock.last_reading_s.len(), clock.loosened.len(), clock.screens.len()] == [sensors; 3]
-                && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
+        let members = &self.cylinder.settings().bank[..self.roles.members];
+        let fits = snapshot.bank.is_like(&self.cylinder, members)
+            && snapshot.onsets.is_like(self.cylinder.states())
+            && self.cylinder.model().fits_warm_start(&snapshot.warm_start);
         if !fits {
             return Err(EstimatorError::SnapshotForeign);
         }
+        snapshot.clock.validate(self.cylinder.outputs())?;
         self.restore(snapshot);
         Ok(())
     }

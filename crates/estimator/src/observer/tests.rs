@@ -58,7 +58,7 @@ fn a_restart_keeps_what_was_learnt_before_it() {
         teacher.step(60.0 * f64::from(k), &REST).unwrap();
     }
     let learned = teacher.learned().unwrap();
-    let mut pupil = observer(Engine::Extended).with_learned(learned.clone());
+    let mut pupil = observer(Engine::Extended).with_learned(learned.clone()).unwrap();
     pupil.step(0.0, &[f64::NAN; 3]).unwrap();
     pupil.bank.members[0].x[0] = f64::NAN;
     assert_eq!(pupil.step(60.0, &[f64::NAN; 3]).unwrap().quality, Quality::Restarted);

@@ -1,5 +1,4 @@
 //! A sensor: its numbers, its static reading and the derivatives of that.
-#[cfg(feature = "design")]
 use crate::EstimatorError;
 use crate::log::Quantity;
 use alloc::string::String;
@@ -55,6 +54,23 @@ impl From<&MountedSensor> for Sensor {
     }
 }
 
+impl From<&Sensor> for MountedSensor {
+    fn from(sensor: &Sensor) -> Self {
+        Self {
+            name: sensor.name.clone(),
+            kind: sensor.kind,
+            lag_s: sensor.lag_s,
+            parameters: sensor.parameters.clone(),
+            drift_per_s: sensor.drift_per_s,
+            noise: sensor.noise_sd,
+            correlated: sensor.correlated,
+            resolution: sensor.resolution,
+            dropout: sensor.dropout,
+            plausible: sensor.plausible,
+        }
+    }
+}
+
 #[cfg(feature = "design")]
 impl TryFrom<&SensorSpec> for Sensor {
     type Error = EstimatorError;
@@ -69,6 +85,14 @@ impl TryFrom<&SensorSpec> for Sensor {
 }
 
 impl Sensor {
+    /// Checks every value; `path` says which one it is, e.g. `sensor[0]`.
+    ///
+    /// # Errors
+    /// [`EstimatorError::Thermal`] with the path of the first value that breaks a bound.
+    pub fn validate(&self, path: &str) -> Result<(), EstimatorError> {
+        Ok(MountedSensor::from(self).validate(path)?)
+    }
+
     /// Parameters: offset, then those of its kind.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters

@@ -1,5 +1,6 @@
 //! Matching of a document's keys with the fields of a specification: same quantity, any unit of its dimension.
-use super::problem::{Problem, suggestion};
+use super::suggestion;
+use crate::problem::Problem;
 use crate::units::{self, Unit};
 
 /// The field a key belongs to and the unit its value is written in.

@@ -10,7 +10,6 @@ pub mod check;
 pub(crate) mod column;
 mod keys;
 mod presets;
-mod problem;
 mod read_error;
 pub mod schema;
 mod value;
@@ -25,9 +24,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::ThermalError;
+pub use crate::problem::Problem;
+use crate::problem::with_table;
 pub use presets::Presets;
-pub use problem::Problem;
-pub(crate) use problem::{suggestion, with_table, without_indices};
 use read_error::ReadError;
 use value::ValueReader;
 
@@ -146,4 +145,14 @@ pub fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<(T, Places), 
 /// A field's name, as serde wants to have it.
 fn field_name(name: &'static str) -> BorrowedStrDeserializer<'static, ReadError> {
     BorrowedStrDeserializer::new(name)
+}
+
+/// `, did you mean x?` for the candidate most similar to `word`, or nothing if none is.
+pub(crate) fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(similarity, _)| *similarity > 0.75)
+        .map_or(String::new(), |(_, candidate)| format!(", did you mean {candidate}?"))
 }

@@ -3,7 +3,7 @@ use std::fmt;
 
 use serde::de::{self, Expected, Unexpected};
 
-use super::problem::Problem;
+use crate::problem::Problem;
 
 /// A problem on its way up, first without and then with its line.
 #[derive(Debug)]

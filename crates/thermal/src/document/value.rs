@@ -7,9 +7,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{example, match_key};
-use super::problem::{Problem, suggestion, with_table, without_indices};
 use super::read_error::ReadError;
+use super::suggestion;
 use super::{Context, Place, field_name};
+use crate::problem::{Problem, with_table, without_indices};
 use crate::units::Unit;
 
 /// Reader of one value.

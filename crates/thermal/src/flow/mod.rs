@@ -30,6 +30,21 @@ pub struct Flow {
     pub closes_above_pa: Option<f64>,
 }
 
+impl Flow {
+    /// A flow that is open all the time, whatever the pressure.
+    pub fn open(name: &str, kind: FlowKind) -> Self {
+        Self {
+            name: name.into(),
+            kind,
+            start_s: 0.0,
+            stop_s: f64::INFINITY,
+            opens_above_pa: None,
+            closes_below_pa: None,
+            closes_above_pa: None,
+        }
+    }
+}
+
 /// What drives a flow.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FlowKind {

@@ -232,9 +232,13 @@ impl ReducedModel {
         self.skin_k.clone_from(&start.skin_k);
     }
 
-    /// Whether a start has the shape of this model's.
+    /// Whether a start can be one of this model's: of as many nodes, with volumes that this vessel may have.
     pub fn fits_warm_start(&self, start: &WarmStart) -> bool {
+        let reference_m3 = self.gas.reference_volume_m3();
+        let volumes = 0.1 * reference_m3..=10.0 * reference_m3;
         start.skin_k.len() == self.skin_k.len()
+            && start.skin_k.iter().all(|skin_k| skin_k.is_finite())
+            && start.volumes_m3.iter().all(|volume_m3| volumes.contains(volume_m3))
     }
 
     /// Index of the valve's temperature, if there is a valve.

@@ -87,15 +87,7 @@ fn rates_are_those_of_the_simulation_on_the_same_wall() {
 
 fn leaking(mass_flow_kg_s: f64) -> scenario::Scenario {
     let mut scenario = scenario::presets::load("bottle-step").unwrap();
-    scenario.flows = vec![crate::flow::Flow {
-        name: "leak".into(),
-        start_s: 0.0,
-        stop_s: f64::INFINITY,
-        opens_above_pa: None,
-        closes_above_pa: None,
-        closes_below_pa: None,
-        kind: crate::flow::FlowKind::Leak { mass_flow_kg_s },
-    }];
+    scenario.flows = vec![crate::flow::Flow::open("leak", crate::flow::FlowKind::Leak { mass_flow_kg_s })];
     scenario
 }
 

@@ -331,5 +331,5 @@ fn disorder(time_s: &[f64]) -> Option<(usize, String)> {
 /// Last name of a path without index.
 fn last(path: &str) -> String {
     let last = path.rsplit('.').next().unwrap_or(path);
-    crate::document::without_indices(last)
+    crate::problem::without_indices(last)
 }

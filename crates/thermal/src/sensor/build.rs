@@ -2,10 +2,10 @@
 use super::kind::{Kind, StatedKind};
 use super::parameter::{Parameter, ParameterKind};
 use super::spec::{KeyOf, SensorSpec};
+use super::valid::{self, Bound};
 use super::{CorrelatedNoise, MountedSensor, Pt100Class, Quantity};
 use crate::ThermalError;
 use crate::document::check;
-use crate::units::ZERO_CELSIUS_K;
 
 /// Checks the sensors of a document; `table` is their path in it, e.g. `sensor`.
 ///
@@ -36,27 +36,30 @@ impl SensorSpec {
     pub fn build(&self, path: &str) -> Result<MountedSensor, ThermalError> {
         let Kind { quantity, stated, .. } = self.kind_or_default().kind();
         let table = Table { spec: self, path, is_pressure: *quantity == Quantity::Pressure };
-        table.name()?;
+        valid::name(path, &self.name)?;
         table.refuse_foreign(stated)?;
         let kind = (stated.build)(&table)?;
-        let lag_s = table.lag_s()?;
-        let offset = if table.is_pressure { table.offset_pa()? } else { table.offset_k()? };
-        let mut parameters = vec![offset];
-        parameters.extend((stated.parameters)(&table)?);
-        parameters[0].walk_per_sqrt_s = table.walk()?;
-        Ok(MountedSensor {
+        let mut offset = if table.is_pressure { table.offset_pa()? } else { table.offset_k()? };
+        offset.walk_per_sqrt_s = table.walk()?;
+        let more =
+            kind.parameters().skip(1).zip((stated.parameters)(self)).map(|((kind, _), [mean, sd])| {
+                Parameter::normal(kind, mean.unwrap_or(0.0), sd.unwrap_or(0.0))
+            });
+        let (low, high) = (stated.plausible)(&kind);
+        let sensor = MountedSensor {
             name: self.name.clone(),
             kind,
-            lag_s,
-            parameters,
+            lag_s: self.lag_s.unwrap_or(0.0),
+            parameters: core::iter::once(offset).chain(more).collect(),
             drift_per_s: self.drift_k_s.or(self.drift_pa_s).unwrap_or(0.0),
-            noise: table.size("noise_k", self.noise_k)? + table.size("noise_pa", self.noise_pa)?,
+            noise: self.noise_k.or(self.noise_pa).unwrap_or(0.0),
             correlated: table.correlated()?,
-            resolution: table.size("resolution_k", self.resolution_k)?
-                + table.size("resolution_pa", self.resolution_pa)?,
-            dropout: table.fraction("dropout", self.dropout, "0.01 loses one reading of a hundred")?,
-            plausible: table.plausible((stated.plausible)(&kind))?,
-        })
+            resolution: self.resolution_k.or(self.resolution_pa).unwrap_or(0.0),
+            dropout: self.dropout.unwrap_or(0.0),
+            plausible: (self.lowest_k.unwrap_or(low), self.highest_k.unwrap_or(high)),
+        };
+        sensor.validate(path)?;
+        Ok(sensor)
     }
 }
 
@@ -70,17 +73,6 @@ pub(super) struct Table<'a> {
 impl Table<'_> {
     pub(super) fn at(&self, field: &str) -> String {
         format!("{}.{field}", self.path)
-    }
-
-    fn name(&self) -> Result<(), ThermalError> {
-        let name = &self.spec.name;
-        let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-        if name.is_empty() || !name.chars().all(is_word) {
-            let remedy = "it becomes part of a column's name, e.g. measured_shoulder_degc";
-            let text = format!("{name:?}");
-            return Err(check::broken(&self.at("name"), text, "of the letters a-z, digits and _", remedy));
-        }
-        Ok(())
     }
 
     /// Keys of other kinds mean nothing here; a silent one would look as if it did.
@@ -104,33 +96,11 @@ impl Table<'_> {
         Ok(())
     }
 
-    /// Height above the outer bottom, m.
-    pub(super) fn height_m(&self) -> Result<Option<f64>, ThermalError> {
-        let Some(height_m) = self.spec.height_m else { return Ok(None) };
-        let remedy = "it counts from the outer bottom";
-        check::within(&self.at("height_m"), height_m, (0.0, 50.0), "between 0 and 50 m", remedy).map(Some)
-    }
-
-    /// A part of the whole: 0 where it is not stated.
-    pub(super) fn fraction(
-        &self,
-        field: &str,
-        value: Option<f64>,
-        remedy: &str,
-    ) -> Result<f64, ThermalError> {
-        check::fraction(&self.at(field), value.unwrap_or(0.0), remedy)
-    }
-
     /// A standard deviation, tolerance or step: 0 where it is not stated.
-    pub(super) fn size(&self, field: &str, value: Option<f64>) -> Result<f64, ThermalError> {
-        let remedy = "it is a size without a sign; leave it out for none";
-        check::not_negative(&self.at(field), value.unwrap_or(0.0), remedy)
-    }
-
-    fn lag_s(&self) -> Result<f64, ThermalError> {
-        let remedy = "give the time constant, e.g. lag_s = 20, or leave it out";
-        let lag_s = self.spec.lag_s.unwrap_or(0.0);
-        check::within(&self.at("lag_s"), lag_s, (0.0, 86_400.0), "between 0 and 1 d", remedy)
+    fn size(&self, field: &'static str, value: Option<f64>) -> Result<f64, ThermalError> {
+        let value = value.unwrap_or(0.0);
+        Bound::size(field).check(self.path, value)?;
+        Ok(value)
     }
 
     fn offset_k(&self) -> Result<Parameter, ThermalError> {
@@ -157,14 +127,14 @@ impl Table<'_> {
     fn offset(
         &self,
         value: f64,
-        tolerance: (&str, Option<f64>),
+        tolerance: (&'static str, Option<f64>),
         sd: (&str, Option<f64>),
     ) -> Result<Parameter, ThermalError> {
         let kind = ParameterKind::Offset;
         match (tolerance.1, sd.1) {
             (Some(_), Some(_)) => Err(self.two_tolerances(sd.0, "offset_tolerance")),
             (Some(limit), None) => Ok(Parameter::within(kind, value, self.size(tolerance.0, Some(limit))?)),
-            (None, given) => Ok(Parameter::normal(kind, value, self.size(sd.0, given)?)),
+            (None, given) => Ok(Parameter::normal(kind, value, given.unwrap_or(0.0))),
         }
     }
 
@@ -199,24 +169,7 @@ impl Table<'_> {
             (None, None) => Ok(None),
             (None, Some(_)) => Err(check::missing(&self.at(field), remedy)),
             (Some(_), None) => Err(check::missing(&self.at("correlation_time_s"), remedy)),
-            (Some(_), Some(time_s)) => Ok(Some(CorrelatedNoise {
-                sd: self.size(field, sd)?,
-                time_s: check::positive(&self.at("correlation_time_s"), time_s, remedy)?,
-            })),
+            (Some(sd), Some(time_s)) => Ok(Some(CorrelatedNoise { sd, time_s })),
         }
-    }
-
-    fn plausible(&self, (low, high): (f64, f64)) -> Result<(f64, f64), ThermalError> {
-        if self.is_pressure {
-            return Ok((low, high));
-        }
-        let low = check::temperature_k(&self.at("lowest_k"), self.spec.lowest_k.unwrap_or(low))?;
-        let high = check::temperature_k(&self.at("highest_k"), self.spec.highest_k.unwrap_or(high))?;
-        if high <= low {
-            let bound = format!("above the lowest reading of {:.2} degC", low - ZERO_CELSIUS_K);
-            let remedy = "a reading outside of these is taken for a fault";
-            return Err(check::broken(&self.at("highest_k"), high, &bound, remedy));
-        }
-        Ok((low, high))
     }
 }

@@ -12,6 +12,7 @@ mod pt100;
 mod reading;
 #[cfg(feature = "files")]
 mod spec;
+mod valid;
 
 use alloc::string::String;
 use alloc::vec::Vec;

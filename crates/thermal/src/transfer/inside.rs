@@ -99,8 +99,13 @@ fn catmull_rom(u: f64) -> ([f64; 4], [f64; 4]) {
 /// Whole part, rounded down, and the rest. Without a call of the library for the floor, which costs as much as the interpolation.
 fn cell_of(x: f64) -> (i32, f64) {
     let truncated = x as i32;
-    let index = if f64::from(truncated) > x { truncated - 1 } else { truncated };
+    let index = if f64::from(truncated) > x { truncated.saturating_sub(1) } else { truncated };
     (index, x - f64::from(index))
+}
+
+/// Node of a stencil about a cell: the one before it first. Beyond the end of the numbers there is no gas either.
+fn beside(cell: i32, node: usize) -> i32 {
+    cell.saturating_add(node as i32 - 1)
 }
 
 /// `[group][temperature][pressure]`
@@ -164,8 +169,7 @@ impl FilmGrid {
     }
 
     fn patch(&self, (i, j): GridIndex) -> Patch {
-        let nodes: [[[f64; 2]; 4]; 4] =
-            from_fn(|a| from_fn(|b| self.node((i + a as i32 - 1, j + b as i32 - 1))));
+        let nodes: [[[f64; 2]; 4]; 4] = from_fn(|a| from_fn(|b| self.node((beside(i, a), beside(j, b)))));
         [0, 1].map(|group| nodes.map(|row| row.map(|node| node[group])))
     }
 
@@ -177,7 +181,7 @@ impl FilmGrid {
         // Beside the saturation line a stencil reaches into the liquid: take the nearest warmer gas.
         let node = (0..10)
             .find_map(|up| {
-                let temperature = f64::from(index.0 + up) * STEP_K;
+                let temperature = f64::from(index.0.saturating_add(up)) * STEP_K;
                 film_groups_exact(&self.fluid, temperature, pressure).ok()
             })
             .map_or([f64::NAN; 2], |(ln_k, ln_r)| [ln_k, ln_r]);

@@ -13,6 +13,7 @@ pub mod presets;
 mod read;
 #[cfg(feature = "files")]
 pub mod spec;
+mod valid;
 
 use alloc::string::String;
 use alloc::vec::Vec;

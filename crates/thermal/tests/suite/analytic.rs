@@ -59,15 +59,10 @@ fn adiabatic_blowdown_of_ideal_argon_follows_the_closed_form() {
     let mut scenario = still(288.15, 288.15, 1e-9, 25.0 / 3600.0);
     scenario.sample_time_s = 1.0;
     scenario.initial.fill = Fill::Pressure { pressure_pa: 150e5 };
-    scenario.flows.push(Flow {
-        name: "nozzle".into(),
-        kind: FlowKind::Orifice { diameter_m: 0.004, discharge_coefficient: 0.8, back_pressure_pa: 1e5 },
-        start_s: 0.0,
-        stop_s: f64::INFINITY,
-        opens_above_pa: None,
-        closes_below_pa: None,
-        closes_above_pa: None,
-    });
+    scenario.flows.push(Flow::open(
+        "nozzle",
+        FlowKind::Orifice { diameter_m: 0.004, discharge_coefficient: 0.8, back_pressure_pa: 1e5 },
+    ));
     let trajectory = run(&vessel, &scenario, 1e-9);
     let g: f64 = 5.0 / 3.0;
     let area = 0.25 * std::f64::consts::PI * 0.004_f64.powi(2) * 0.8;

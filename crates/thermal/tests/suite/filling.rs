@@ -34,15 +34,7 @@ fn hole(diameter_m: f64) -> Opening {
 }
 
 pub(crate) fn supply(opening: Opening, source: Source) -> Flow {
-    Flow {
-        name: "refill".into(),
-        kind: FlowKind::Supply { opening, source, inlet_diameter_m: None },
-        start_s: 0.0,
-        stop_s: f64::INFINITY,
-        opens_above_pa: None,
-        closes_below_pa: None,
-        closes_above_pa: None,
-    }
+    Flow::open("refill", FlowKind::Supply { opening, source, inlet_diameter_m: None })
 }
 
 pub(crate) fn filled(start_pa: f64, start_k: f64, seconds: f64, flow: Flow) -> Scenario {

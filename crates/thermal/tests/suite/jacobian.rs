@@ -68,15 +68,7 @@ fn full() -> Vessel {
 }
 
 fn flow(kind: FlowKind) -> Flow {
-    Flow {
-        name: "flow".into(),
-        kind,
-        start_s: 0.0,
-        stop_s: f64::INFINITY,
-        opens_above_pa: None,
-        closes_below_pa: None,
-        closes_above_pa: None,
-    }
+    Flow::open("flow", kind)
 }
 
 fn with_flows(kinds: Vec<FlowKind>) -> Scenario {

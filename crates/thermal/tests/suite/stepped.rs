@@ -24,15 +24,7 @@ fn inputs(step: usize) -> (f64, f64) {
 }
 
 fn leak(mass_flow_kg_s: Series) -> Flow {
-    Flow {
-        name: "leak".into(),
-        kind: FlowKind::LeakSeries { mass_flow_kg_s },
-        start_s: 0.0,
-        stop_s: f64::INFINITY,
-        opens_above_pa: None,
-        closes_below_pa: None,
-        closes_above_pa: None,
-    }
+    Flow::open("leak", FlowKind::LeakSeries { mass_flow_kg_s })
 }
 
 /// A step of its own.

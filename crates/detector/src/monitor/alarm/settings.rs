@@ -1,7 +1,8 @@
 //! Settings of the six alarms of a cylinder.
+use alloc::boxed::Box;
 use serde::{Deserialize, Serialize};
 
-use super::{Alarm, ExclusiveLimit, Limit, OffNormal, Timing};
+use super::{Alarm, AlarmName, ExclusiveLimit, Limit, OffNormal, Timing};
 use crate::DetectorError;
 use crate::prognosis::ISO_14520_LOSS;
 use crate::units::{BAR_PA, DAY_S, HOUR_S, MINUTE_S};
@@ -80,13 +81,19 @@ impl AlarmSettings {
     }
 
     /// # Errors
-    /// Names the setting, its value and the bound.
+    /// Names the alarm, the setting, its value and the bound.
     pub fn validate(&self) -> Result<(), DetectorError> {
-        self.leak.validate()?;
-        self.operational_limit.validate()?;
-        self.maintenance_limit.validate()?;
-        self.sensor_fault.validate()?;
-        self.unknown.validate()?;
-        self.cold_night.validate()
+        for (alarm, checked) in [
+            (AlarmName::Leak, self.leak.validate()),
+            (AlarmName::OperationalLimit, self.operational_limit.validate()),
+            (AlarmName::MaintenanceLimit, self.maintenance_limit.validate()),
+            (AlarmName::SensorFault, self.sensor_fault.validate()),
+            (AlarmName::Unknown, self.unknown.validate()),
+            (AlarmName::ColdNight, self.cold_night.validate()),
+        ] {
+            let of_alarm = |source| DetectorError::Alarm { alarm: alarm.as_str(), source: Box::new(source) };
+            checked.map_err(of_alarm)?;
+        }
+        Ok(())
     }
 }

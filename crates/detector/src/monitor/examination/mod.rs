@@ -49,6 +49,9 @@ use cylwatch_estimator::thermal::real::powi;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
+use super::restored;
+use crate::DetectorError;
+
 pub(super) use far::{FORGOTTEN_S, FarOff, kept};
 
 /// Model's error at rest, as a part of the full pressure.
@@ -279,6 +282,13 @@ pub(super) struct Examination {
 }
 
 impl Examination {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self) -> Result<(), DetectorError> {
+        let (members, courses) = (self.members.len(), self.subject.courses().count());
+        let all = members == courses;
+        restored::require(all, "examination.members", members as f64, "one for each course")
+    }
+
     /// Of a jump at `onset_s`, s. What the surroundings do is forgotten within `memory_s`, s.
     pub(super) fn new(
         subject: Subject,

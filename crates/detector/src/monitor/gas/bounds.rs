@@ -31,9 +31,11 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use super::wander::Wander;
+use crate::DetectorError;
 use crate::estimator::observer::Flow;
 use crate::monitor::examination::FORGOTTEN_S;
 use crate::monitor::extremes::Extremes;
+use crate::monitor::restored;
 
 /// Time constant with which extremes fade, s.
 const FADING_S: f64 = 2700.0;
@@ -220,6 +222,12 @@ pub(in crate::monitor) struct GasBounds {
 }
 
 impl GasBounds {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
+        let Excursions { now, most, .. } = self.excursions;
+        restored::count("bounds.excursions", now.max(most) as u64)
+    }
+
     /// Take in a row, with the mass of a pressure, Pa, and a temperature, K, kg; not a number outside the gas's domain.
     pub(crate) fn push(&mut self, seen: &Seen, mass_kg: impl Fn(f64, f64) -> f64) -> Option<Certain> {
         self.follow(seen);

@@ -5,6 +5,9 @@
 //! 12 % in a winter, a bar by a unit of pressure by much more, a filling that is known as well as is assumed by 1 %.
 use serde::{Deserialize, Serialize};
 
+use crate::DetectorError;
+use crate::monitor::restored;
+
 /// Time over which the mass is averaged, s, and fewest rows.
 const LOOK_S: f64 = 6.0 * 3600.0;
 const FEWEST: u32 = 30;
@@ -26,6 +29,11 @@ pub(in crate::monitor) struct FillingCheck {
 }
 
 impl FillingCheck {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
+        restored::count("filling.rows", self.rows.into())
+    }
+
     /// Whether it is still looking.
     pub(crate) fn is_open(&self) -> bool {
         !self.done

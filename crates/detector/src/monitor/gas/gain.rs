@@ -6,6 +6,9 @@
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
+use crate::DetectorError;
+use crate::monitor::restored;
+
 /// Interval of the masses that are kept, s, and how long they are kept, s.
 const INTERVAL_S: f64 = 600.0;
 const KEPT_S: f64 = 6.0 * 3600.0;
@@ -24,6 +27,11 @@ pub(in crate::monitor) struct GainWatch {
 }
 
 impl GainWatch {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
+        restored::at_most(KEPT, "gains.recent", self.recent.len(), "those of six hours")
+    }
+
     /// Take in a mass, kg, of a cylinder that was filled with so much, kg; when a filling began that is over now, s, and its gain, kg.
     pub(crate) fn push(&mut self, time_s: f64, mass_kg: f64, filled_kg: f64) -> Option<(f64, f64)> {
         if self.recent.last().is_some_and(|(last_s, _)| time_s - last_s < INTERVAL_S) {

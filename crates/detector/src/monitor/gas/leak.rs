@@ -6,7 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::onset::Posterior;
-use crate::monitor::{Interval, LeakFinding};
+use crate::DetectorError;
+use crate::monitor::{Interval, LeakFinding, restored};
 
 /// Prior odds of a leak within the weeks that are remembered: one in a hundred.
 const PRIOR_ODDS: f64 = 0.01;
@@ -83,6 +84,14 @@ pub(in crate::monitor) struct Look {
 }
 
 impl LeakState {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
+        let not_negative = |what, value: f64| restored::require(value >= 0.0, what, value, "at least 0");
+        not_negative("leak.odds", self.odds.unwrap_or(0.0))?;
+        not_negative("leak.largest_odds", self.largest_odds)?;
+        not_negative("leak.largest_per_s", self.largest_per_s)
+    }
+
     /// Take in a sample, and what is known of a leak at it where a look is due.
     // Its 7 kB of stack are not to lie below the observer's.
     #[inline(never)]

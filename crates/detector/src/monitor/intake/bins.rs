@@ -8,6 +8,8 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::row::{Readings, Row};
+use crate::DetectorError;
+use crate::monitor::restored::{self, Restored};
 
 /// Rows in a bin at most; a fuller one is handed out early.
 const ROWS_AT_MOST: usize = 256;
@@ -28,6 +30,22 @@ pub(super) struct Bins {
 }
 
 impl Bins {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self, step_s: f64, of: &Restored) -> Result<(), DetectorError> {
+        restored::require(self.step_s == step_s, "intake.bins.step_s", self.step_s, "that of the settings")?;
+        restored::at_most(ROWS_AT_MOST, "intake.bins.rows", self.rows, "at most 256")?;
+        of.each("intake.bins.readings", self.readings.len())?;
+        for readings in &self.readings {
+            let count = readings.len();
+            let full = count == self.rows;
+            restored::require(full, "intake.bins.readings", count as f64, "one for each row")?;
+        }
+        let open = self.last_s.is_some() == (self.rows > 0);
+        restored::require(open, "intake.bins.rows", self.rows as f64, "0 where there is no last one")?;
+        of.any_time("intake.bins.last_s", self.last_s.map(|(time_s, _)| time_s))?;
+        of.any_time("intake.bins.passed_s", self.passed_s)
+    }
+
     /// Bins of a width, s; 0: none.
     pub(super) fn new(step_s: f64, sensors: usize) -> Self {
         Self { step_s, last_s: None, rows: 0, readings: vec![Vec::new(); sensors], passed_s: None }

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use super::row::{Readings, Row, United};
+use super::{CONFIRM_JUMP, STAMP_LARGEST_S};
+use crate::DetectorError;
+use crate::monitor::restored::{self, Restored};
 
 /// A row whose time is not believed yet.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,6 +50,17 @@ impl Default for Guard {
 }
 
 impl Guard {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self, of: &Restored) -> Result<(), DetectorError> {
+        let Self { offset_s, latest_s, run } = self;
+        let believed = |time_s: f64| time_s.abs() <= 2.0 * STAMP_LARGEST_S;
+        restored::require(believed(*offset_s), "intake.offset_s", *offset_s, "at most 2e12 s either way")?;
+        let known = believed(*latest_s) || *latest_s == f64::NEG_INFINITY;
+        restored::require(known, "intake.latest_s", *latest_s, "at most 2e12 s either way")?;
+        restored::at_most(CONFIRM_JUMP, "intake.run", run.len(), "at most 3")?;
+        run.iter().try_for_each(|stray| of.each("intake.run", stray.readings.len()))
+    }
+
     /// Where a stamp lies with an allowed lateness and a time ahead that needs no confirmation, s.
     pub(super) fn place(&self, stamp_s: f64, lateness_s: f64, reach_s: f64) -> Place {
         match self.ahead_s(stamp_s) {

@@ -2,6 +2,9 @@
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
+use crate::DetectorError;
+use crate::monitor::restored;
+
 /// Intervals that are remembered: seven gaps among them change nothing.
 const REMEMBERED: usize = 15;
 
@@ -14,6 +17,12 @@ pub(super) struct UsualInterval {
 }
 
 impl UsualInterval {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self) -> Result<(), DetectorError> {
+        restored::at_most(REMEMBERED, "intake.usual.recent_s", self.recent_s.len(), "at most 15")?;
+        restored::at_most(REMEMBERED - 1, "intake.usual.next", self.next, "at most 14")
+    }
+
     /// Take an interval, s; one that is not positive is none.
     pub(super) fn push(&mut self, interval_s: f64) {
         if interval_s <= 0.0 {

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use super::clock::Stray;
+use crate::DetectorError;
+use crate::monitor::restored;
 use generation::Generation;
 
 mod generation;
@@ -46,6 +48,16 @@ impl Default for Memory {
 }
 
 impl Memory {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self) -> Result<(), DetectorError> {
+        restored::at_most(ROWS as usize, "intake.memory.rows", self.rows as usize, "at most 600")?;
+        let youngest = usize::from(self.youngest);
+        restored::at_most(GENERATIONS - 1, "intake.memory.youngest", youngest, "at most 3")?;
+        restored::at_most(GAPS, "intake.memory.gaps", self.gaps.len(), "at most 16")?;
+        let longest = self.generations.iter().map(Generation::len).max().unwrap_or(0);
+        restored::at_most(ROWS as usize, "intake.memory.generations", longest, "at most 600")
+    }
+
     /// Remember a row.
     pub(super) fn keep(&mut self, hash: u64) {
         if self.rows == ROWS {

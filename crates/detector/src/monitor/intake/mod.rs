@@ -31,6 +31,7 @@ use self::order::{Inserted, Order};
 use self::row::United;
 pub use self::row::{Counts, Readings, Row, Taken};
 pub use self::settings::IntakeSettings;
+use super::restored::{self, Restored};
 use super::{Event, EventKind};
 use crate::DetectorError;
 
@@ -75,6 +76,34 @@ impl Intake {
             counts: Counts::default(),
             astray: 0,
         })
+    }
+
+    /// Time of the latest row that was accepted, s; minus infinity: of none.
+    pub(super) fn latest_s(&self) -> f64 {
+        self.guard.latest_s
+    }
+
+    /// Checks one that was saved, of a monitor with these settings.
+    pub(super) fn validate(&self, settings: &IntakeSettings, of: &Restored) -> Result<(), DetectorError> {
+        let Counts { rows, duplicates, merged, contradictions, too_late, wild, jumps, gaps } = self.counts;
+        for counted in [rows, duplicates, merged, contradictions, too_late, wild, jumps, gaps] {
+            restored::count("intake.counts", counted)?;
+        }
+        let own = &self.settings;
+        for (what, own, stated) in [
+            ("intake.lateness_s", own.lateness_s, settings.lateness_s),
+            ("intake.step_s", own.step_s, settings.step_s),
+            ("intake.gap_s", own.gap_s, settings.gap_s),
+            ("intake.longest_gap_s", own.longest_gap_s, settings.longest_gap_s),
+        ] {
+            restored::require(own == stated, what, own, "that of the settings")?;
+        }
+        of.each("intake.sensors", self.sensors)?;
+        self.guard.validate(of)?;
+        self.order.validate(of)?;
+        self.usual.validate()?;
+        self.memory.validate()?;
+        self.bins.validate(settings.step_s, of)
     }
 
     /// Memory for rows as they usually come.

@@ -4,6 +4,8 @@ use alloc::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 
 use super::row::{Row, United};
+use crate::DetectorError;
+use crate::monitor::restored::{self, Restored};
 
 /// Rows that are held back at most; the oldest one beyond that is handed out early.
 const HELD_AT_MOST: usize = 4096;
@@ -31,6 +33,12 @@ pub(super) struct Order {
 }
 
 impl Order {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self, of: &Restored) -> Result<(), DetectorError> {
+        restored::at_most(HELD_AT_MOST + 1, "intake.waiting", self.waiting.len(), "at most 4097")?;
+        self.waiting.iter().chain(&self.handed_out).try_for_each(|row| row.validate("intake.waiting", of))
+    }
+
     /// Memory for the rows that wait where none are late.
     pub(super) fn make_room(&mut self) {
         self.waiting.reserve(4);

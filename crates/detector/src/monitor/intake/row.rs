@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use super::super::Event;
+use crate::DetectorError;
+use crate::monitor::restored::Restored;
 
 /// Readings of a row, one per sensor, SI, NaN where missing; up to eight of them lie in the row itself.
 pub type Readings = SmallVec<[f64; 8]>;
@@ -21,6 +23,16 @@ pub struct Row {
 }
 
 impl Row {
+    /// Checks one that was saved.
+    pub(in crate::monitor) fn validate(
+        &self,
+        what: &'static str,
+        of: &Restored,
+    ) -> Result<(), DetectorError> {
+        of.each(what, self.readings.len())?;
+        of.time(what, self.time_s)
+    }
+
     /// Take over readings of the same time. New finite ones stand.
     pub(super) fn unite(&mut self, with: &[f64]) -> United {
         let mut united = United::Same;

@@ -16,9 +16,11 @@
 //! What a transmitter's jump is, [`crate::monitor::gas::jump`] tells.
 use serde::{Deserialize, Serialize};
 
+use crate::DetectorError;
 use crate::estimator::log::Quantity;
 use crate::estimator::sensor::Sensor;
 use crate::monitor::Health;
+use crate::monitor::restored;
 use crate::units::ATMOSPHERE_PA;
 
 /// Rows without a number that are too many in a row.
@@ -67,6 +69,28 @@ pub struct SensorWatch {
 }
 
 impl SensorWatch {
+    /// Checks one of this sensor that was saved.
+    pub(crate) fn validate(&self, sensor: &Sensor) -> Result<(), DetectorError> {
+        let Self { low, high, at_rest, .. } = Self::new(sensor);
+        for (what, own, of_sensor) in [
+            ("watches.low", self.low, low),
+            ("watches.high", self.high, high),
+            ("watches.at_rest", self.at_rest, at_rest),
+        ] {
+            let same = own.to_bits() == of_sensor.to_bits();
+            restored::require(same, what, own, "that of the sensor")?;
+        }
+        for (what, value) in [
+            ("watches.seen", self.seen),
+            ("watches.repeated", self.repeated),
+            ("watches.correction", self.correction),
+            ("watches.shifted", self.shifted),
+        ] {
+            restored::require(value.is_finite(), what, value, "finite")?;
+        }
+        Ok(())
+    }
+
     /// Of a sensor.
     pub fn new(sensor: &Sensor) -> Self {
         let (low, high) = sensor.usable_range();

@@ -20,7 +20,9 @@
 use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 
+use crate::DetectorError;
 use crate::monitor::intake::Readings;
+use crate::monitor::restored::{self, Restored};
 use crate::units::MINUTE_S;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
@@ -47,6 +49,9 @@ const APART: f64 = 0.4;
 const APART_PRESSURE: f64 = 0.75;
 
 /// Readings of two thermometers, in errors of a surface temperature, and of the pressure, Pa.
+/// What no channel that was found late is late by, s: four steps of five minutes, and the pressure as much after the other one.
+const LONGEST_DELAY_S: f64 = 3600.0;
+
 type Three = [f64; 3];
 const NONE: Three = [f64::NAN; 3];
 
@@ -121,6 +126,18 @@ struct Grid {
 }
 
 impl Grid {
+    /// Checks one that was saved.
+    fn validate(&self) -> Result<(), DetectorError> {
+        restored::count("lags.rows", self.rows.into())?;
+        if self.step_s == 0.0 {
+            return Ok(());
+        }
+        let usual = (MINUTE_S..=LONGEST_STEP_S).contains(&self.step_s);
+        restored::require(usual, "lags.step_s", self.step_s, "0, or between 60 and 300 s")?;
+        let next = self.last.is_none_or(|(last_s, _)| (self.next_s - last_s).abs() <= 2.0 * self.step_s);
+        restored::require(next, "lags.next_s", self.next_s, "at most two steps from the last row")
+    }
+
     /// The points up to a row; `None` among them where no row is near.
     fn push(&mut self, time_s: f64, readings: Three, mut point: impl FnMut(Three)) {
         let begun_s = *self.begun_s.get_or_insert(time_s);
@@ -161,6 +178,13 @@ pub(in crate::monitor) struct LagMeter {
 }
 
 impl LagMeter {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self) -> Result<(), DetectorError> {
+        restored::at_most(POINTS, "lags.points", self.points.len(), "at most 3")?;
+        restored::at_most(LONGEST + 1, "lags.differences", self.differences.len(), "at most 5")?;
+        self.grid.validate()
+    }
+
     /// Take in two thermometers, in errors of a surface temperature, and the pressure, Pa; NaN where there is none.
     pub(crate) fn push(&mut self, time_s: f64, readings: Three) {
         let Self { grid, points, differences, thermometers, with_pressure } = self;
@@ -211,6 +235,22 @@ pub(in crate::monitor) struct DelayLine {
 }
 
 impl DelayLine {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self, of: &Restored) -> Result<(), DetectorError> {
+        if self.delays_s.is_empty() {
+            return restored::at_most(0, "delays.rows", self.rows.len(), "0 without delays");
+        }
+        of.each("delays.delays_s", self.delays_s.len())?;
+        for &delay_s in &self.delays_s {
+            let measured = (0.0..=LONGEST_DELAY_S).contains(&delay_s);
+            restored::require(measured, "delays.delays_s", delay_s, "between 0 and 1 h")?;
+        }
+        self.rows.iter().try_for_each(|(time_s, readings)| {
+            of.each("delays.rows", readings.len())?;
+            of.time("delays.rows", *time_s)
+        })
+    }
+
     /// Hold each sensor back by so much, s.
     pub(crate) fn of(delays_s: Vec<f64>) -> Self {
         Self { delays_s, rows: VecDeque::new() }

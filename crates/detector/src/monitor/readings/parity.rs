@@ -25,7 +25,9 @@ use cylwatch_estimator::thermal::real::powi;
 use serde::{Deserialize, Serialize};
 
 use super::of_its_own;
+use crate::DetectorError;
 use crate::monitor::median::{median, quantile};
+use crate::monitor::restored;
 use crate::units::{DAY_S, HOUR_S};
 use calm::Calm;
 
@@ -148,6 +150,16 @@ impl Window {
 }
 
 impl Parity {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
+        if let Some(Named { which, windows, .. }) = self.named {
+            restored::one_of_two("parity.named", which)?;
+            restored::count("parity.named.windows", windows.into())?;
+        }
+        restored::count("parity.window.rows", self.window.map_or(0, |window| window.rows.into()))?;
+        restored::at_most(WINDOWS, "parity.calm", self.calm.len(), "those of three days")
+    }
+
     /// Of thermometers where the model misses so much of a temperature on the surface, K.
     pub(crate) fn new(error_k: f64) -> Self {
         Self { error_k, ..Self::default() }

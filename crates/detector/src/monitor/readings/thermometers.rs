@@ -25,9 +25,11 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use super::of_its_own;
+use crate::DetectorError;
 use crate::monitor::examination::{Before, Cause, Compared, Examination, FarOff, SPAN, Subject};
 use crate::monitor::extremes::Extremes;
 use crate::monitor::gas::jump::LONGEST_INTERVAL_S;
+use crate::monitor::restored;
 use crate::units::{DAY_S, HOUR_S, MINUTE_S};
 
 /// Jump against the slope before, in errors of a surface temperature, in a minute: what a tunnel does grows with the interval.
@@ -122,6 +124,17 @@ pub struct Surroundings {
 }
 
 impl Pair {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
+        restored::at_most(SAMPLES, "pair.recent", self.recent.len(), "at most 3")?;
+        if let Some((which, _)) = self.probation {
+            restored::one_of_two("pair.probation", which)?;
+        }
+        let Some(Suspect { which, examination }) = &self.suspect else { return Ok(()) };
+        restored::one_of_two("pair.suspect", *which)?;
+        examination.validate()
+    }
+
     /// Of thermometers that read in steps of so much at most, K, where the model misses so much of a temperature on the surface, K.
     pub fn new(resolution_k: f64, error_k: f64) -> Self {
         Self { error_k, steps_k: STEPS * resolution_k, ..Self::default() }

@@ -18,6 +18,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::lateness::LagMeter;
+use crate::DetectorError;
 use crate::estimator::observer::Innovation;
 
 /// Time from which it is judged, and after which it is left alone, s.
@@ -52,6 +53,11 @@ pub(in crate::monitor) struct WiringCheck {
 }
 
 impl WiringCheck {
+    /// Checks one that was saved.
+    pub(crate) fn validate(&self) -> Result<(), DetectorError> {
+        self.lags.as_ref().map_or(Ok(()), LagMeter::validate)
+    }
+
     /// A check of everything.
     pub(crate) fn of_all() -> Self {
         Self { lags: Some(LagMeter::default()), ..Self::default() }

@@ -4,11 +4,16 @@ use alloc::vec::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::{LOOK_S, Monitor};
+use crate::DetectorError;
 use crate::estimator::observer::{Checkpoint, Observer};
 use crate::monitor::Reason;
+use crate::units::DAY_S;
 
 /// Time between two checkpoints of an undisturbed observer, s. The one before the last is gone back to: a disturbance is noticed an hour or two late.
 const BETWEEN_S: f64 = 6.0 * 3600.0;
+
+/// Age from which what was known says less than what is known now, s.
+const OLDEST_S: f64 = 100.0 * DAY_S;
 
 /// The observer as it was before a disturbance.
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -24,6 +29,14 @@ pub(super) struct Undisturbed {
 }
 
 impl Undisturbed {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self, observer: &mut Observer) -> Result<(), DetectorError> {
+        for checkpoint in self.latest.iter().chain(&self.before) {
+            observer.validate_checkpoint(checkpoint)?;
+        }
+        Ok(())
+    }
+
     /// Make room for checkpoints of this observer.
     pub(super) fn make_room(&mut self, observer: &Observer) {
         let there = usize::from(self.latest.is_some()) + usize::from(self.before.is_some());
@@ -49,13 +62,16 @@ impl Undisturbed {
 
 impl Monitor {
     /// A disturbance is over with the present row, which is not taken yet: back to what was known before it.
-    pub(super) fn go_back_before_disturbance(&mut self) {
+    pub(super) fn go_back_before_disturbance(&mut self, time_s: f64) {
         // The masses from before it still say when a leak began.
         self.state.evidence.forget();
         if self.state.examined.is_some() {
             return;
         }
-        if let Some(before) = &self.state.undisturbed.before {
+        let recent = |of: &&Checkpoint| {
+            of.time_s().is_some_and(|before_s| (0.0..=OLDEST_S).contains(&(time_s - before_s)))
+        };
+        if let Some(before) = self.state.undisturbed.before.as_ref().filter(recent) {
             self.observer.begin_exchange_from(before);
             self.state.undisturbed.returning = true;
             self.state.jumps.forget();

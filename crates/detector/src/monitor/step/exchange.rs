@@ -16,7 +16,7 @@ use crate::monitor::gas::bounds::{Certain, Contact, FLOW_DEVIATIONS, Seen};
 use crate::monitor::gas::jump::{Innovated, LONGEST_INTERVAL_S, USUAL_LARGEST};
 use crate::monitor::gas::leak::{Change, LostUnheard};
 use crate::monitor::step::judgement::MATTERS;
-use crate::monitor::{Event, EventKind, Reason};
+use crate::monitor::{Event, EventKind, Reason, restored};
 
 /// Time for which a jump that remained unclear leaves doubt, s.
 const DOUBT_S: f64 = 86_400.0;
@@ -32,6 +32,14 @@ pub(super) struct Examined {
     pub flowing: bool,
     /// Since when nothing had been heard before it, s, if that was for long.
     silent_since_s: Option<f64>,
+}
+
+impl Examined {
+    /// Checks one that was saved.
+    pub(super) fn validate(&self) -> Result<(), DetectorError> {
+        restored::count("examined.samples", self.samples as u64)?;
+        self.examination.validate()
+    }
 }
 
 /// Gas that was exchanged.

@@ -129,9 +129,12 @@ impl Monitor {
     }
 
     /// Start with what an observer of the same cylinder has learnt; before the first row.
-    pub fn with_learned(mut self, learned: Learned) -> Self {
-        self.observer = Box::new(self.observer.with_learned(learned));
-        self
+    ///
+    /// # Errors
+    /// As [`Learned::validate`].
+    pub fn with_learned(mut self, learned: Learned) -> Result<Self, DetectorError> {
+        self.observer = Box::new(self.observer.with_learned(learned)?);
+        Ok(self)
     }
 
     /// Somebody has seen the alarms, looked after the sensors and knows the filling.

@@ -6,7 +6,9 @@ use crate::estimator::observer::{Commissioning, Companion, Snapshot, SnapshotRef
 use crate::estimator::sensor::Sensor;
 use crate::estimator::thermal::vessel::Vessel;
 use crate::monitor::MonitorSettings;
+use crate::monitor::restored::{self, Restored};
 use crate::sealed::{self, Fingerprint, Kind, Payload, SealError};
+use crate::units::QUOTED_K;
 use alloc::vec::Vec;
 use serde::Serialize;
 
@@ -60,9 +62,12 @@ impl Monitor {
         let was_held_against: Fingerprint = saved.part()?;
         let mut monitor = Self::new(vessel, sensors, &commissioning, settings)?;
         monitor.state.read(&mut saved)?;
-        monitor.read_observers(&mut saved)?;
+        let of = Restored::new(sensors.len(), monitor.state.intake.latest_s(), &settings.intake);
+        monitor.state.validate((vessel, sensors, settings), &mut monitor.observer, &of)?;
+        monitor.read_observers(&mut saved, &of)?;
         monitor.know_the_filling(monitor.state.begun_with);
         monitor.state.make_room(&monitor.observer);
+        monitor.state.p15.move_to(QUOTED_K);
         monitor.state.cold.move_to(settings.limits.coldest_k);
         if was_held_against != held_against(settings) {
             monitor.state.outlook_due_s = f64::NEG_INFINITY;
@@ -72,16 +77,26 @@ impl Monitor {
 
     /// One after the other: each takes as much memory as a bank.
     #[inline(never)]
-    fn read_observers(&mut self, saved: &mut Payload<'_>) -> Result<(), DetectorError> {
-        self.observer.try_restore(&saved.part()?)?;
+    fn read_observers(&mut self, saved: &mut Payload<'_>, of: &Restored) -> Result<(), DetectorError> {
+        let checked = |snapshot: &Snapshot| of.any_time("observer.time_s", snapshot.time_s());
+        let own: Snapshot = saved.part()?;
+        checked(&own)?;
+        self.observer.try_restore(&own)?;
+        drop(own);
         let twin: Option<Snapshot> = saved.part()?;
+        twin.as_ref().map_or(Ok(()), checked)?;
         match (&mut self.twin, &twin) {
             (Some(twin), Some(saved)) => self.observer.with(twin, |observer| observer.try_restore(saved))?,
             _ => self.twin = None,
         }
         drop(twin);
-        if let Some(shadow) = saved.part::<Option<Snapshot>>()? {
-            self.observer.with(&mut self.shadow, |observer| observer.try_restore(&shadow))?;
+        let shadow: Option<Snapshot> = saved.part()?;
+        let examined = shadow.is_some() == self.state.examined.is_some();
+        let shadows = f64::from(u8::from(shadow.is_some()));
+        restored::require(examined, "shadow", shadows, "there while a jump is examined, and not else")?;
+        if let Some(saved) = &shadow {
+            checked(saved)?;
+            self.observer.with(&mut self.shadow, |observer| observer.try_restore(saved))?;
         }
         Ok(())
     }

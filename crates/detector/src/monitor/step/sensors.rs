@@ -90,7 +90,7 @@ impl Monitor {
                 events.push(Event::new(time_s, time_s, EventKind::Disturbed { sensors: pair, off_k }));
             }
             Some(Disturbance::Over(by_k)) => {
-                self.go_back_before_disturbance();
+                self.go_back_before_disturbance(time_s);
                 if by_k.abs() > self.jumped_k() {
                     // One of them has shifted, and which is unknown.
                     for sensor in pair {
@@ -99,7 +99,7 @@ impl Monitor {
                 }
             }
             Some(Disturbance::Shifted(which, by_k)) => {
-                self.go_back_before_disturbance();
+                self.go_back_before_disturbance(time_s);
                 self.let_shift(pair[which], by_k);
             }
         }

@@ -9,6 +9,7 @@ use super::{EXCHANGED_S, SETTLED_S};
 use crate::DetectorError;
 use crate::estimator::observer::{Commissioning, Observer};
 use crate::estimator::sensor::Sensor;
+use crate::estimator::thermal::vessel::Vessel;
 use crate::evidence::Evidence;
 use crate::monitor::alarm::AlarmPanel;
 use crate::monitor::gas::bounds::GasBounds;
@@ -23,6 +24,7 @@ use crate::monitor::readings::lateness::DelayLine;
 use crate::monitor::readings::parity::Parity;
 use crate::monitor::readings::thermometers::Pair;
 use crate::monitor::readings::wiring::WiringCheck;
+use crate::monitor::restored::Restored;
 use crate::monitor::{Health, MonitorSettings, Outlook, Reason, Verdict};
 use crate::sealed::{Payload, SealError};
 use crate::units::QUOTED_K;
@@ -136,6 +138,36 @@ impl State {
             exchanged flowed_s announced outlook outlook_due_s p15 cold cold_s
         }
         Ok(())
+    }
+
+    /// Checks what a monitor is to go on from that has just been made with this observer.
+    #[inline(never)]
+    pub(super) fn validate(
+        &self,
+        (vessel, sensors, settings): (&Vessel, &[Sensor], &MonitorSettings),
+        observer: &mut Observer,
+        of: &Restored,
+    ) -> Result<(), DetectorError> {
+        self.intake.validate(&settings.intake, of)?;
+        of.each("watches", self.watches.len())?;
+        of.each("health", self.health.len())?;
+        for (watch, sensor) in self.watches.iter().zip(sensors) {
+            watch.validate(sensor)?;
+        }
+        self.pair.validate()?;
+        self.parity.validate()?;
+        self.undisturbed.validate(observer)?;
+        self.wiring.validate()?;
+        self.delays.validate(of)?;
+        self.begun_with.mass_kg(vessel, QUOTED_K)?;
+        self.filling.validate()?;
+        self.bounds.validate()?;
+        self.gains.validate()?;
+        self.examined.as_ref().map_or(Ok(()), Examined::validate)?;
+        self.leak.validate()?;
+        self.ready.rows.iter().try_for_each(|row| row.validate("ready", of))?;
+        self.ready.events.iter().try_for_each(|event| event.validate(of))?;
+        of.any_time("last_s", Some(self.last_s).filter(|last_s| *last_s != f64::NEG_INFINITY))
     }
 
     /// Memory for all that comes, so that no row needs any.

@@ -33,6 +33,20 @@ enum Kept<P: Plant> {
     Singles(Vec<Single<P>>),
 }
 
+impl<P: Plant> Outline<P> {
+    /// Whether it is that of a bank with so many states and members.
+    pub(crate) fn is_like(&self, states: usize, members: usize) -> bool {
+        let packs = match &self.covariances {
+            Kept::Packs(packs) => {
+                packs.len() == members.div_ceil(Pack::SIZE) && packs.iter().all(|pack| pack.is_like(states))
+            }
+            Kept::Singles(_) => false,
+        };
+        let apart = states * members.saturating_sub(1);
+        packs && [self.mean.len(), self.apart.len(), self.own_variances.len()] == [states, apart, members]
+    }
+}
+
 impl<P: Plant> Bank<P> {
     /// Memory for an outline.
     pub(crate) fn outline(&self, states: usize) -> Outline<P> {

@@ -114,6 +114,12 @@ impl Pack {
         }
     }
 
+    /// Whether it is of this plant and so many members.
+    pub(super) fn is_like<P: Plant>(&self, plant: &P, members: usize) -> bool {
+        self.bank.is_like(plant.states(), plant.leading(), members)
+            && self.groups.iter().all(|group| group.reference < members)
+    }
+
     /// Become as others of the same members are, without allocating.
     pub(super) fn copy_from(&mut self, other: &Self) {
         self.bank.copy_from(&other.bank);

@@ -45,6 +45,11 @@ impl UdBank {
 
 impl Factors {
     /// Memory for the outline of a filter of `n` states.
+    /// Whether it is of one filter with so many states.
+    pub(crate) fn is_like(&self, n: usize) -> bool {
+        [self.u.len(), self.d.len()] == [n * n.saturating_sub(1) / 2, n]
+    }
+
     pub(crate) fn with_room(n: usize) -> Self {
         let (u, d) = (Vec::with_capacity(n * n.saturating_sub(1) / 2), Vec::with_capacity(n));
         Self { states: 0, leading: 0, filters: 1, u, d }

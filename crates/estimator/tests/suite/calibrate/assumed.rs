@@ -57,15 +57,7 @@ fn a_leak_is_asked_about_and_other_gaps_of_the_model_are_not() {
     };
     for leak_g_h in LEAKS_G_H {
         let mut leaking = known.clone();
-        leaking.flows.push(Flow {
-            name: "leak".into(),
-            kind: FlowKind::Leak { mass_flow_kg_s: leak_g_h / 3.6e6 },
-            start_s: 0.0,
-            stop_s: f64::INFINITY,
-            opens_above_pa: None,
-            closes_below_pa: None,
-            closes_above_pa: None,
-        });
+        leaking.flows.push(Flow::open("leak", FlowKind::Leak { mass_flow_kg_s: leak_g_h / 3.6e6 }));
         let found = leaks(&leaking);
         println!("{leak_g_h} g/h: {found:?}");
         let [one] = &found[..] else { panic!("{leak_g_h} g/h: {found:?}") };

@@ -98,7 +98,7 @@ fn stationary_engine_with_learnt_constants_comes_near_the_extended_one() {
     let mut teacher = observer(Engine::Extended);
     case.run(&mut teacher);
     let rms = |engine: &str| {
-        let mut pupil = single(engine).with_learned(teacher.learned().unwrap());
+        let mut pupil = single(engine).with_learned(teacher.learned().unwrap()).unwrap();
         case.gas_rms_k(&case.run(&mut pupil))
     };
     let (stationary, extended) = (rms("stationary"), rms("ekf"));

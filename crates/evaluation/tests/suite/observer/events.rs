@@ -105,7 +105,7 @@ fn what_was_learnt_makes_a_better_cold_start() {
     assert_eq!(restored, learned);
     let case = Case::new(Chamber::SCENARIOS[1], SHOCK_SEED, 60.0);
     let mut cold = observer(Engine::Extended);
-    let mut taught = observer(Engine::Extended).with_learned(restored);
+    let mut taught = observer(Engine::Extended).with_learned(restored).unwrap();
     let (cold, taught) = (case.run(&mut cold), case.run(&mut taught));
     let mass_rms = |estimates: &[Estimate]| {
         // Constant errors of the sensors shift the mass for ever: what counts is its change.

@@ -11,6 +11,7 @@ pub(super) const KIND: Kind = Kind {
         per_parameter: [1.0, 0.0, 0.0],
         ..Prediction::default()
     },
+    parameters: &[],
     #[cfg(feature = "files")]
     stated: StatedKind {
         name: "ambient",
@@ -18,7 +19,7 @@ pub(super) const KIND: Kind = Kind {
         is_named: |name| name == "ambient",
         columns: &["ambient"],
         build: |_| Ok(SensorKind::Ambient),
-        parameters: |_| Ok(Vec::new()),
+        parameters: |_| Vec::new(),
         coupling: None,
         plausible: |_| super::surface::OUTSIDE_K,
         typical: |spec| {

@@ -11,6 +11,10 @@ use {
 #[cfg(feature = "files")]
 pub(super) const INSIDE_K: (f64, f64) = (93.15, 603.15);
 
+/// What to say of a place in the gas that is none.
+pub(in super::super) const CELL_REMEDY: &str =
+    "say where it hangs: cell = 1 is the lowest cell of the gas, or height_mm = 400";
+
 pub(super) const KIND: Kind = Kind {
     quantity: Quantity::Temperature,
     predict: |_, exposure, parameters| Prediction {
@@ -19,6 +23,7 @@ pub(super) const KIND: Kind = Kind {
         per_parameter: [1.0, 0.0, 0.0],
         ..Prediction::default()
     },
+    parameters: &[],
     #[cfg(feature = "files")]
     stated: StatedKind {
         name: "gas",
@@ -26,7 +31,7 @@ pub(super) const KIND: Kind = Kind {
         is_named: |name| cell_of(name).is_some(),
         columns: &["gas_<name>"],
         build: |table| Ok(SensorKind::Gas { place: place(table)? }),
-        parameters: |_| Ok(Vec::new()),
+        parameters: |_| Vec::new(),
         coupling: None,
         plausible: |_| INSIDE_K,
         typical: |spec| {
@@ -48,20 +53,18 @@ fn cell_of(name: &str) -> Option<usize> {
 #[cfg(feature = "files")]
 pub(super) fn place(table: &Table<'_>) -> Result<GasPlace, ThermalError> {
     let spec = table.spec;
-    if let Some(height_m) = table.height_m()? {
+    if let Some(height_m) = spec.height_m {
         if spec.cell.is_some() {
             return Err(check::conflict(&table.at("height_m"), "cell", "say in one way where it hangs"));
         }
         return Ok(GasPlace::Height { height_m });
     }
-    let remedy = "say where it hangs: cell = 1 is the lowest cell of the gas, or height_mm = 400";
     match (spec.cell, cell_of(&spec.name)) {
-        (Some(0), _) => Err(check::broken(&table.at("cell"), 0, "at least 1", remedy)),
         (None, Some(0)) => {
             let remedy = "gas_1 is the lowest cell of the gas";
             Err(check::broken(&table.at("name"), &spec.name, "numbered from 1", remedy))
         }
         (Some(number), _) | (None, Some(number)) => Ok(GasPlace::Cell { number }),
-        (None, None) => Err(check::missing(&table.at("cell"), remedy)),
+        (None, None) => Err(check::missing(&table.at("cell"), CELL_REMEDY)),
     }
 }

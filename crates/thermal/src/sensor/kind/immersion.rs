@@ -12,12 +12,9 @@
 //!
 //! # References
 //! [incropera], fins of uniform cross section.
-use super::{Kind, Prediction, Quantity};
+use super::{Bound, Kind, ParameterKind, Prediction, Quantity};
 #[cfg(feature = "files")]
-use {
-    super::{Parameter, SensorKind, StatedKind, gas},
-    crate::sensor::ParameterKind,
-};
+use super::{SensorKind, StatedKind, gas};
 
 /// Typical stem: a tube of stainless steel, 40 mm long.
 #[cfg(feature = "files")]
@@ -41,6 +38,13 @@ pub(super) const KIND: Kind = Kind {
             ..Prediction::default()
         }
     },
+    parameters: &[(
+        ParameterKind::Coupling,
+        [
+            Bound::fraction("stem_coupling", "0 is a stem that conducts no heat, 0.08 a steel tube of 40 mm"),
+            Bound::fraction("stem_coupling_sd", "0.06 covers films down to half of the usual one"),
+        ],
+    )],
     #[cfg(feature = "files")]
     stated: StatedKind {
         name: "immersion",
@@ -48,14 +52,7 @@ pub(super) const KIND: Kind = Kind {
         is_named: |_| false,
         columns: &[],
         build: |table| Ok(SensorKind::Immersion { place: gas::place(table)? }),
-        parameters: |table| {
-            let spec = table.spec;
-            let remedy = "0 is a stem that conducts no heat, 0.08 a steel tube of 40 mm";
-            let coupling = table.fraction("stem_coupling", spec.stem_coupling, remedy)?;
-            let remedy = "0.06 covers films down to half of the usual one";
-            let sd = table.fraction("stem_coupling_sd", spec.stem_coupling_sd, remedy)?;
-            Ok(vec![Parameter::normal(ParameterKind::Coupling, coupling, sd)])
-        },
+        parameters: |spec| vec![[spec.stem_coupling, spec.stem_coupling_sd]],
         coupling: Some(|spec| [&mut spec.stem_coupling, &mut spec.stem_coupling_sd]),
         plausible: |_| gas::INSIDE_K,
         typical: |spec| {

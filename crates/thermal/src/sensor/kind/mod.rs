@@ -6,13 +6,16 @@ mod immersion;
 mod pressure;
 mod surface;
 
+use super::parameter::ParameterKind;
 use super::place::{GasPlace, SurfacePlace};
 use super::reading::{Exposure, Prediction, Quantity, Site};
+use super::valid::{Bound, Bounds};
+pub(super) use gas::CELL_REMEDY;
 pub use pressure::{ELECTRONICS_REFERENCE_K, PressureReference};
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "files")]
 use {
-    super::{Parameter, SensorSpec, build::Table},
+    super::{SensorSpec, build::Table},
     crate::ThermalError,
     schemars::JsonSchema,
 };
@@ -68,6 +71,8 @@ pub(super) struct Kind {
     pub(super) quantity: Quantity,
     /// Static reading with its derivatives; the parameters are in the order of a sensor's.
     pub(super) predict: fn(&SensorKind, &Exposure, &[f64]) -> Prediction,
+    /// Parameters beyond the offset, with their bounds.
+    pub(super) parameters: &'static [(ParameterKind, Bounds)],
     #[cfg(feature = "files")]
     pub(super) stated: StatedKind,
 }
@@ -88,8 +93,8 @@ pub(super) struct StatedKind {
     pub(super) columns: &'static [&'static str],
     /// What it reads and where, checked.
     pub(super) build: fn(&Table<'_>) -> Result<SensorKind, ThermalError>,
-    /// Parameters beyond the offset, checked.
-    pub(super) parameters: fn(&Table<'_>) -> Result<Vec<Parameter>, ThermalError>,
+    /// Parameters beyond the offset, as a table states them: mean and standard deviation.
+    pub(super) parameters: fn(&SensorSpec) -> Vec<[Option<f64>; 2]>,
     /// Where a table says the coupling and its standard deviation; `None`: it has none.
     pub(super) coupling: Option<CouplingKeys>,
     /// Lowest and highest value that can be a reading unless the table says otherwise.
@@ -117,6 +122,14 @@ impl SensorKind {
             Self::Gas { place } | Self::Immersion { place } => Site::Gas(place),
             Self::Ambient => Site::Air,
         }
+    }
+
+    /// Its parameters in their order, with the bounds of those beyond the offset.
+    pub(super) fn parameters(
+        &self,
+    ) -> impl Iterator<Item = (ParameterKind, Option<&'static Bounds>)> + Clone {
+        let more = self.kind().parameters.iter().map(|(kind, bounds)| (*kind, Some(bounds)));
+        core::iter::once((ParameterKind::Offset, None)).chain(more)
     }
 
     /// What it measures.

@@ -6,15 +6,14 @@
 //!
 //! Typical: absolute, 250 bar full scale, accuracy 0.25 % of it, temperature coefficient 0 ± 0.1 % of it per 10 K, noise
 //! 10 mbar.
-use super::{Kind, Prediction, Quantity, SensorKind};
+use super::{Bound, Kind, ParameterKind, Prediction, Quantity, SensorKind};
 use crate::units::ATMOSPHERE_PA;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "files")]
 use {
-    super::{Parameter, StatedKind, Table},
+    super::{StatedKind, Table},
     crate::ThermalError,
     crate::document::check,
-    crate::sensor::ParameterKind,
 };
 
 /// Temperature of the electronics at which a pressure transmitter has no temperature error, K: 15 °C.
@@ -71,6 +70,24 @@ pub(super) const KIND: Kind = Kind {
             ..Prediction::default()
         }
     },
+    parameters: &[
+        (
+            ParameterKind::TemperatureCoefficient,
+            [Bound::any("temperature_coefficient_pa_k"), Bound::size("temperature_coefficient_sd_pa_k")],
+        ),
+        (
+            ParameterKind::Span,
+            [
+                Bound {
+                    key: "span_ratio",
+                    range: (-0.5, 0.5),
+                    bound: "between -50 and 50 %",
+                    remedy: "a reading of 0.1 % too much is span_percent = 0.1",
+                },
+                Bound::size("span_sd_ratio"),
+            ],
+        ),
+    ],
     #[cfg(feature = "files")]
     stated: StatedKind {
         name: "pressure",
@@ -78,7 +95,12 @@ pub(super) const KIND: Kind = Kind {
         is_named: |name| name == "pressure",
         columns: &["pressure"],
         build,
-        parameters,
+        parameters: |spec| {
+            vec![
+                [spec.temperature_coefficient_pa_k, spec.temperature_coefficient_sd_pa_k],
+                [spec.span_ratio, spec.span_sd_ratio],
+            ]
+        },
         coupling: None,
         plausible: |kind| match *kind {
             SensorKind::Pressure { reference, full_scale_pa: Some(scale_pa) } => {
@@ -101,15 +123,6 @@ pub(super) const KIND: Kind = Kind {
 #[cfg(feature = "files")]
 fn build(table: &Table<'_>) -> Result<SensorKind, ThermalError> {
     let spec = table.spec;
-    let full_scale_pa = match spec.full_scale_pa {
-        Some(full_scale_pa) => {
-            let (bound, remedy) =
-                ("between 1 Pa and 2000 bar", "it is the upper end of the range, e.g. 250 bar");
-            let range = check::PRESSURE_RANGE_PA;
-            Some(check::within(&table.at("full_scale_pa"), full_scale_pa, range, bound, remedy)?)
-        }
-        None => None,
-    };
     let reference = if spec.gauge == Some(true) {
         let range = (-500.0, 11_000.0);
         let (bound, remedy) = ("between -500 m and 11 km", "it gives the air's pressure after ISO 2533");
@@ -123,23 +136,7 @@ fn build(table: &Table<'_>) -> Result<SensorKind, ThermalError> {
     } else {
         PressureReference::Absolute
     };
-    Ok(SensorKind::Pressure { reference, full_scale_pa })
-}
-
-#[cfg(feature = "files")]
-fn parameters(table: &Table<'_>) -> Result<Vec<Parameter>, ThermalError> {
-    let spec = table.spec;
-    let coefficient_pa_k = spec.temperature_coefficient_pa_k.unwrap_or(0.0);
-    let coefficient_sd_pa_k =
-        table.size("temperature_coefficient_sd_pa_k", spec.temperature_coefficient_sd_pa_k)?;
-    let (bound, remedy) = ("between -50 and 50 %", "a reading of 0.1 % too much is span_percent = 0.1");
-    let span = spec.span_ratio.unwrap_or(0.0);
-    let span = check::within(&table.at("span_ratio"), span, (-0.5, 0.5), bound, remedy)?;
-    let span_sd = table.size("span_sd_ratio", spec.span_sd_ratio)?;
-    Ok(vec![
-        Parameter::normal(ParameterKind::TemperatureCoefficient, coefficient_pa_k, coefficient_sd_pa_k),
-        Parameter::normal(ParameterKind::Span, span, span_sd),
-    ])
+    Ok(SensorKind::Pressure { reference, full_scale_pa: spec.full_scale_pa })
 }
 
 /// Pressure of the standard atmosphere at an altitude up to 11 km, Pa: `p_0 (1 - L h / T_0)^(g / (R L))`.

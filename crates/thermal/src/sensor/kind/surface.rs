@@ -1,11 +1,11 @@
 //! Thermometer on the wall or the valve: `y = T + kappa (T_air - T) + b` with the mounting coupling `kappa`.
-use super::{Kind, Prediction, Quantity};
+use super::{Bound, Kind, ParameterKind, Prediction, Quantity};
 #[cfg(feature = "files")]
 use {
-    super::{Parameter, SensorKind, StatedKind, SurfacePlace, Table},
+    super::{SensorKind, StatedKind, SurfacePlace, Table},
     crate::ThermalError,
     crate::document::check,
-    crate::sensor::{PLACES, ParameterKind, Pt100Class},
+    crate::sensor::{PLACES, Pt100Class},
 };
 
 /// Lowest and highest temperature outside that can be a reading, K: colder than the coldest weather, hotter than
@@ -25,6 +25,13 @@ pub(super) const KIND: Kind = Kind {
             ..Prediction::default()
         }
     },
+    parameters: &[(
+        ParameterKind::Coupling,
+        [
+            Bound::fraction("air_coupling", "0 is a sensor in ideal contact, 0.15 to 0.2 a strapped one"),
+            Bound::fraction("air_coupling_sd", "0.04 is usual for strapped sensors"),
+        ],
+    )],
     #[cfg(feature = "files")]
     stated: StatedKind {
         name: "surface",
@@ -32,17 +39,7 @@ pub(super) const KIND: Kind = Kind {
         is_named: |_| false,
         columns: &["shoulder", "valve", "wall_<place>"],
         build: |table| Ok(SensorKind::Surface { place: place(table)? }),
-        parameters: |table| {
-            let spec = table.spec;
-            let remedy = "0 is a sensor in ideal contact, 0.15 to 0.2 a strapped one";
-            let coupling = table.fraction("air_coupling", spec.air_coupling, remedy)?;
-            let sd = table.fraction(
-                "air_coupling_sd",
-                spec.air_coupling_sd,
-                "0.04 is usual for strapped sensors",
-            )?;
-            Ok(vec![Parameter::normal(ParameterKind::Coupling, coupling, sd)])
-        },
+        parameters: |spec| vec![[spec.air_coupling, spec.air_coupling_sd]],
         coupling: Some(|spec| [&mut spec.air_coupling, &mut spec.air_coupling_sd]),
         plausible: |_| OUTSIDE_K,
         typical: |spec| {
@@ -59,7 +56,7 @@ pub(super) const KIND: Kind = Kind {
 #[cfg(feature = "files")]
 fn place(table: &Table<'_>) -> Result<SurfacePlace, ThermalError> {
     let spec = table.spec;
-    if let Some(height_m) = table.height_m()? {
+    if let Some(height_m) = spec.height_m {
         if spec.place.is_some() {
             return Err(check::conflict(&table.at("height_m"), "place", "say in one way where it sits"));
         }

@@ -25,6 +25,10 @@ impl Generation {
     }
 
     /// Nothing any more; the memory stays.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
     pub(super) fn clear(&mut self) {
         self.0.clear();
     }

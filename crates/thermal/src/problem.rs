@@ -1,4 +1,6 @@
-//! What can be wrong with a document, in words that name key, value, bound and remedy.
+//! What can be wrong with a document or a value, in words that name key, value, bound and remedy.
+use alloc::borrow::ToOwned;
+use alloc::string::String;
 
 /// A fault of a document or of a specification; where it is stands in the error around it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -112,16 +114,6 @@ pub enum Problem {
         /// What to do.
         remedy: String,
     },
-}
-
-/// `, did you mean x?` for the candidate most similar to `word`, or nothing if none is.
-pub(crate) fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
-    candidates
-        .into_iter()
-        .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(similarity, _)| *similarity > 0.75)
-        .map_or(String::new(), |(_, candidate)| format!(", did you mean {candidate}?"))
 }
 
 /// The key as people read it: the tables of `path` without indices, then the key itself.
