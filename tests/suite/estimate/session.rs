@@ -156,7 +156,7 @@ fn what_was_learnt_makes_the_next_start_surer_and_is_refused_for_another_vessel(
     };
     assert!(sd("b.csv") < 0.9 * sd("a.csv"), "{} and {}", sd("b.csv"), sd("a.csv"));
     let other = ["estimate", "closed-bottle", "run.csv", "--learned-in", "cylinder.json"];
-    crate::support::refused(folder.path(), &other, &["cylinder.json was learnt on", "closed bottle"]);
+    crate::support::refused(folder.path(), &other, &["cylinder.json: this was learnt on", "closed bottle"]);
     for (bad, words) in [("{}", "no file of --learned-out"), ("[", "no JSON")] {
         std::fs::write(folder.path().join("cylinder.json"), bad).unwrap();
         crate::support::refused(folder.path(), &second, &[words]);
