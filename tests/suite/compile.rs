@@ -128,7 +128,7 @@ fn a_footprint_has_the_bytes_of_this_cylinder_and_what_the_targets_take() {
     assert!(here("state_bytes") >= fresh.len() as f64, "{} below {}", here("state_bytes"), fresh.len());
     assert!(here("arena_begin_bytes") > here("state_bytes"));
     assert!(here("arena_row_bytes") >= here("arena_begin_bytes"));
-    // The state lies in the arena beside the monitor.
+    // The state lies with the caller, what is read of it in the arena.
     assert!(here("arena_restore_bytes") > here("arena_row_bytes"));
     // This is the reference cylinder.
     for quantity in ["arena_begin_bytes", "arena_row_bytes", "arena_restore_bytes"] {

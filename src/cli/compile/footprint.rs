@@ -21,7 +21,7 @@ const QUANTITIES: [(&str, &str, &str); 14] = [
     ("state_bytes", "saved state", "bytes"),
     ("arena_begin_bytes", "arena to begin", "bytes"),
     ("arena_row_bytes", "arena between rows", "bytes"),
-    ("arena_restore_bytes", "arena to save and restore", "bytes"),
+    ("arena_restore_bytes", "arena to restore", "bytes"),
     ("code_bytes", "code", "bytes"),
     ("constants_bytes", "constants", "bytes"),
     ("stack_begin_bytes", "stack to begin", "bytes"),
@@ -124,7 +124,7 @@ fn measured() -> anyhow::Result<Vec<(String, Vec<Option<i64>>)>> {
     reader.into_records().map(|record| Ok(line(record.context(damaged)?))).collect()
 }
 
-/// Bytes of the state after two days, and of the arena: to begin, between rows, to save and restore.
+/// Bytes of the state after two days, and of the arena: to begin, between rows, to restore.
 fn run_dry(cylinder: &CompiledCylinder, bytes: &[u8]) -> anyhow::Result<(usize, [Option<usize>; 3])> {
     let (rows, mut room) = (rows(cylinder)?, vec![0; STATE_AT_MOST]);
     let before = PeakAlloc.current_usage();

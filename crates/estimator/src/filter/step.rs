@@ -17,6 +17,7 @@ use super::kernel::axpy;
 use super::state_space::Linearisation;
 
 /// Number and length, s, of the equal parts that an interval is divided into.
+#[cfg(feature = "design")]
 pub(crate) fn parts(dt_s: f64, longest_part_s: f64) -> (usize, f64) {
     let parts = libm::ceil(dt_s / longest_part_s).max(1.0);
     (parts as usize, dt_s / parts)
@@ -39,6 +40,11 @@ impl Steps {
         let mut steps = Self { part_s: 0.0, passed: 0, parts: u64::MAX };
         while (steps.passed as f64) < fewest && steps.next().is_some() {}
         Self { part_s: dt_s / steps.passed as f64, passed: 0, parts: steps.passed }
+    }
+
+    /// Whether it is one part.
+    pub(crate) fn is_one(&self) -> bool {
+        self.parts == 1
     }
 }
 
@@ -66,7 +72,7 @@ pub struct StepTransition {
 }
 
 /// Memory to double a transition.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct DoublingMemory {
     phi: DMatrix<f64>,
     carried: DMatrix<f64>,

@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 use super::settings::ObserverSettings;
 use super::states::States;
 use crate::EstimatorError;
-use crate::filter::{Linearisation, Plant, StateSpace, parts};
+use crate::filter::{DoublingMemory, Linearisation, Plant, StateSpace, StepTransition, Steps};
 use crate::sensor::Sensor;
 use crate::thermal::reduced::{ReducedModel, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
@@ -79,7 +79,7 @@ struct Work {
     noise: DMatrix<f64>,
     /// Gradient of a sensor behind a lag: (n).
     gradient: Vec<f64>,
-    parts: Option<Box<Parts>>,
+    divided: Option<Box<Divided>>,
 }
 
 impl Cylinder {
@@ -109,7 +109,7 @@ impl Cylinder {
             transition: Transition::new(&structure, states.count()),
             noise: DMatrix::zeros(states.leading, states.leading),
             gradient: vec![0.0; states.count()],
-            parts: None,
+            divided: None,
         };
         let mut cylinder = Self {
             interval_s: vec![f64::INFINITY; sensors.len()],
@@ -286,27 +286,53 @@ impl Cylinder {
         Ok(())
     }
 
-    /// Several steps as one transition, with the noise of all in the work.
+    /// Several [steps](Steps) as one transition, with the noise of all.
     fn divided(
         &mut self,
         x: &mut [f64],
-        h: f64,
-        parts: usize,
-        linear: &mut Linearisation,
+        steps: Steps,
+        linear: Option<&mut Linearisation>,
     ) -> Result<(), EstimatorError> {
         let (n, leading) = (self.states.count(), self.states.leading);
-        let mut memory = self.work.parts.take().unwrap_or_else(|| Box::new(Parts::new(n, leading)));
-        memory.clear();
-        let outcome = (0..parts).try_for_each(|_| {
-            self.step(x, h, true)?;
-            self.work.transition.write_phi(&mut linear.phi);
-            memory.append(&linear.phi, &self.work.noise);
+        let mut memory = self.work.divided.take().unwrap_or_else(|| Box::new(Divided::new(n, leading)));
+        memory.parts.clear();
+        let part_s = steps.part_s;
+        let outcome = steps.into_iter().try_for_each(|doublings| {
+            let Divided { before, step, doubling, parts } = &mut *memory;
+            before.copy_from_slice(x);
+            self.step(x, part_s, true)?;
+            self.work.transition.write_phi(&mut step.phi);
+            step.noise.copy_from(&self.work.noise);
+            (0..doublings).for_each(|_| step.double(before, x, doubling));
+            parts.append(&step.phi, &step.noise);
             Ok(())
         });
-        linear.phi.copy_from(&memory.phi);
-        self.work.noise.copy_from(&memory.noise);
-        self.work.parts = Some(memory);
+        if let Some(linear) = linear {
+            linear.phi.copy_from(&memory.parts.phi);
+            self.work.noise.copy_from(&memory.parts.noise);
+        }
+        self.work.divided = Some(memory);
         outcome
+    }
+}
+
+/// Memory of an interval that is divided.
+#[derive(Clone, Debug)]
+struct Divided {
+    before: Vec<f64>,
+    step: StepTransition,
+    doubling: DoublingMemory,
+    parts: Parts,
+}
+
+impl Divided {
+    fn new(n: usize, leading: usize) -> Self {
+        Self {
+            before: vec![0.0; n],
+            step: StepTransition::zeros(n, leading, 0, 0),
+            doubling: DoublingMemory::new(n, leading),
+            parts: Parts::new(n, leading),
+        }
     }
 }
 
@@ -338,15 +364,15 @@ impl StateSpace for Cylinder {
         if self.noise_by_step {
             self.interval_s.fill(dt_s);
         }
-        let (parts, h) = parts(dt_s, self.settings.longest_step_s);
+        let steps = Steps::of(dt_s, self.settings.longest_step_s);
         let Some(linear) = linear else {
-            return (0..parts).try_for_each(|_| self.step(x, h, false));
+            return if steps.is_one() { self.step(x, dt_s, false) } else { self.divided(x, steps, None) };
         };
-        if parts > 1 {
-            self.divided(x, h, parts, linear)?;
-        } else {
-            self.step(x, h, true)?;
+        if steps.is_one() {
+            self.step(x, dt_s, true)?;
             self.work.transition.write_phi(&mut linear.phi);
+        } else {
+            self.divided(x, steps, Some(linear))?;
         }
         noise::factor(&mut self.work.noise, linear);
         Ok(())
