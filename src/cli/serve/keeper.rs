@@ -11,6 +11,8 @@
 //!
 //! A state that is damaged, and one of a monitor that failed, is set aside under another name, and the monitor begins anew; that is an event.
 mod replay;
+#[cfg(test)]
+mod tests;
 
 use super::config::{Assigned, Settings};
 use super::journal::{Entry, Journal, Segment};

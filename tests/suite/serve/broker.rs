@@ -43,6 +43,7 @@ pub(super) struct Broker {
 
 impl Broker {
     /// Begins on a free port; `None`, and a message, where Mosquitto is not installed.
+    #[allow(clippy::print_stderr)]
     pub(super) fn begin(folder: &Path) -> Option<Self> {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let Some(process) = broker(folder, port) else {
