@@ -34,9 +34,10 @@ pub(super) struct Gateway<'a> {
     said: BTreeSet<(String, Refusal)>,
     /// Why there is no connection, as it was said.
     down: Option<String>,
-    /// States to save, the next first, and when.
+    /// States to save, the next first, when, and the time between two of them.
     saving: VecDeque<String>,
     next_save: Instant,
+    pause: Duration,
     next_round: Instant,
     /// Why the disk cannot be written, as it was said.
     unwritten: bool,
@@ -62,6 +63,7 @@ impl<'a> Gateway<'a> {
             down: None,
             saving: VecDeque::new(),
             next_save: now,
+            pause: Duration::ZERO,
             next_round: now + settings.save_every,
             unwritten: false,
         }
@@ -148,7 +150,7 @@ impl<'a> Gateway<'a> {
             std::thread::sleep(RETRY);
         }
         if std::mem::take(&mut self.unwritten) {
-            self.messages.caution("rows are written again");
+            self.messages.caution("the disk can be written again");
         }
         if let Some(client) = &self.client {
             // A receipt that does not go out costs one more delivery, which is known.
@@ -196,12 +198,12 @@ impl<'a> Gateway<'a> {
             self.noted(turned);
             self.saving = self.keeper.unsaved().into();
             self.next_save = now;
+            self.pause = self.settings.save_every / 2 / (self.saving.len().max(1) as u32);
         }
-        let pause = self.settings.save_every / 2 / (self.saving.len().max(1) as u32);
         while now >= self.next_save
             && let Some(name) = self.saving.pop_front()
         {
-            self.next_save += pause;
+            self.next_save += self.pause;
             let saved = self.keeper.save(&name).map(|_| ());
             self.noted(saved);
         }
