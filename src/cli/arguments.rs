@@ -19,6 +19,8 @@ use super::place::PlaceArguments;
 use super::properties::PropertiesArguments;
 use super::reproduce::ReproduceArguments;
 use super::schema::SchemaArguments;
+#[cfg(feature = "serve")]
+use super::serve::ServeArguments;
 use super::simulate::SimulateArguments;
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -79,6 +81,9 @@ pub(super) enum Command {
     Monitor(Box<MonitorArguments>),
     /// Monitor many cylinders at once, on all cores: tables with the most urgent first, states, and a page.
     Fleet(Box<FleetArguments>),
+    /// Monitor cylinders whose readings come through an MQTT broker, for years: verdicts, events and alarms as messages.
+    #[cfg(feature = "serve")]
+    Serve(ServeArguments),
     /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; twenty minutes.
     Commission(Box<CommissionArguments>),
     /// Compile a cylinder into bytes for a controller, which reads no files.

@@ -16,9 +16,13 @@ mod tally;
 mod vessels;
 
 pub(super) use arguments::{FleetArguments, without_single_runs};
+#[cfg(feature = "serve")]
+pub(super) use folder::{locked, stem};
 pub use kept::FleetOutcome;
 pub(super) use kept::kept;
 pub use tally::FleetProgress;
+#[cfg(feature = "serve")]
+pub(super) use vessels::{as_columns, vessel_beside};
 
 use super::input::Inputs;
 use super::interrupt;

@@ -38,6 +38,8 @@ mod result;
 mod row_stream;
 mod schema;
 mod selection;
+#[cfg(feature = "serve")]
+mod serve;
 mod simulate;
 mod start;
 mod states;
@@ -92,6 +94,8 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Fmu(arguments) => fmu::run(*arguments, messages),
         Command::Commission(arguments) => commission::run(*arguments, messages),
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
+        #[cfg(feature = "serve")]
+        Command::Serve(arguments) => serve::run(arguments, messages),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

@@ -32,10 +32,14 @@ mod steps;
 
 use announced::Announced;
 pub(super) use arguments::{CylinderArguments, MonitorArguments};
+#[cfg(feature = "serve")]
+pub(super) use course::ALARM;
 pub(super) use course::Course;
 pub use course::Told;
 pub(super) use engine::compiled;
 pub(super) use options::{Options, Places};
+#[cfg(feature = "serve")]
+pub(super) use steps::NotResumed;
 pub use steps::RowsWanted;
 pub(crate) use steps::Steps;
 

@@ -40,6 +40,12 @@ pub(super) struct Frame {
 }
 
 impl Frame {
+    /// Names of rows that are not here, and a time as they have it.
+    #[cfg(feature = "serve")]
+    pub(super) fn of(names: &[String], time: StepTime) -> Self {
+        Self { names: names.to_vec(), times: vec![time], cells: Vec::new() }
+    }
+
     /// Readings in the order of the names; NaN for one that is missing.
     ///
     /// # Errors

@@ -32,6 +32,8 @@ mod place;
 mod properties;
 mod report;
 mod reproduce;
+#[cfg(feature = "serve")]
+mod serve;
 mod simulate;
 mod support;
 mod table_1;

@@ -40,11 +40,7 @@ impl Folder {
             make_folder(&folder)?;
             remove_orphans(&folder);
         }
-        let shown = root.display();
-        let lock = File::create(root.join(".lock")).with_context(|| format!("{shown} cannot be written"))?;
-        if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock)) {
-            bail!("{shown} is being written by another run: wait for it, or choose another --output");
-        }
+        let lock = locked(root, "choose another --output")?;
         Ok(Self { root: root.to_path_buf(), _lock: lock })
     }
 
@@ -82,8 +78,18 @@ impl Folder {
     }
 }
 
+/// Locks a folder that one run at a time writes.
+pub(in crate::cli) fn locked(root: &Path, remedy: &str) -> anyhow::Result<File> {
+    let shown = root.display();
+    let lock = File::create(root.join(".lock")).with_context(|| format!("{shown} cannot be written"))?;
+    if matches!(lock.try_lock(), Err(std::fs::TryLockError::WouldBlock)) {
+        bail!("{shown} is being written by another run: wait for it, or {remedy}");
+    }
+    Ok(lock)
+}
+
 /// A name of a file for any name of a cylinder: letters beyond plain ones are escaped, no two names become one.
-pub(super) fn stem(cylinder: &str) -> String {
+pub(in crate::cli) fn stem(cylinder: &str) -> String {
     let mut stem = String::new();
     for (k, byte) in cylinder.bytes().enumerate() {
         let is_plain =

@@ -108,7 +108,7 @@ fn options(assigned: &Assigned, fleet: &FleetArguments) -> anyhow::Result<()> {
 }
 
 /// Options as columns call them.
-fn as_columns(message: &str) -> String {
+pub(in crate::cli) fn as_columns(message: &str) -> String {
     let words = message.split(' ').map(|word| match word.strip_prefix("--") {
         Some(option) => option.replace('-', "_"),
         None => word.to_owned(),
@@ -158,6 +158,16 @@ fn parse(text: &str, file: &str, fleet: &FleetArguments) -> anyhow::Result<BTree
         bail!("{file}: there is no cylinder below the header: write a row for each");
     }
     Ok(named)
+}
+
+/// A vessel as a file of a folder names it: a file beside it, or a built-in name.
+pub(in crate::cli) fn vessel_beside(folder: &Path, vessel: &str) -> String {
+    let beside = folder.join(vessel);
+    let is_preset = vessel::presets::FILES.text(vessel).is_ok();
+    match beside.is_file() || !is_preset {
+        true => beside.to_string_lossy().into_owned(),
+        false => vessel.to_owned(),
+    }
 }
 
 fn folder_of(file: &str) -> &Path {
@@ -234,12 +244,7 @@ impl Row<'_> {
         if vessel.is_empty() || vessel == "-" {
             bail!("vessel of {name} is {vessel:?}: write a TOML file or the name of a built-in vessel");
         }
-        let beside = self.folder.join(vessel);
-        let is_preset = vessel::presets::FILES.text(vessel).is_ok();
-        let vessel = match beside.is_file() || !is_preset {
-            true => beside.to_string_lossy().into_owned(),
-            false => vessel.to_owned(),
-        };
+        let vessel = vessel_beside(self.folder, vessel);
         let arguments = self.arguments()?.or(&fleet.cylinder);
         Ok((name, Assigned { line: Some(line), vessel, arguments }))
     }

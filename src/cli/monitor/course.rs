@@ -1,5 +1,6 @@
 //! What a run keeps for whoever runs many: what happened, and the course of the pressure at 15 °C.
 use crate::detector::monitor::Output;
+use crate::detector::monitor::alarm::AlarmEvent;
 use crate::report::fleet::Trace;
 use crate::report::monitor::{Naming, alarm_line, alarm_text, event_line, event_text};
 use serde::{Deserialize, Serialize};
@@ -20,6 +21,9 @@ pub struct Told {
     /// Line of JSON.
     pub line: String,
 }
+
+/// What [`Told::event`] calls the change of an alarm.
+pub(in crate::cli) const ALARM: &str = "alarm";
 
 /// What is kept of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,16 +57,18 @@ pub(super) fn told(output: &Output, naming: &Naming) -> impl Iterator<Item = Tol
             line: event_line(event, naming),
         }
     });
-    let alarms = output.alarms.iter().map(move |alarm| {
-        let (time_s, time) = at(alarm.transition.time_s);
-        Told {
-            id: alarm.id().to_string(),
-            event: "alarm".to_owned(),
-            time_s,
-            time,
-            words: alarm_text(alarm, clock),
-            line: alarm_line(alarm, clock),
-        }
-    });
-    events.chain(alarms)
+    events.chain(output.alarms.iter().map(|alarm| told_alarm(alarm, naming)))
+}
+
+/// A change of an alarm.
+pub(super) fn told_alarm(alarm: &AlarmEvent, naming: &Naming) -> Told {
+    let (clock, time_s) = (&naming.clock, alarm.transition.time_s);
+    Told {
+        id: alarm.id().to_string(),
+        event: ALARM.to_owned(),
+        time_s: clock.of_log_s(time_s),
+        time: clock.date(time_s).unwrap_or_default(),
+        words: alarm_text(alarm, clock),
+        line: alarm_line(alarm, clock),
+    }
 }

@@ -1,4 +1,6 @@
 //! The monitor step by step: rows from a program that goes on, and bytes of a state at any of them.
+#[cfg(feature = "serve")]
+mod file;
 mod out;
 
 use super::course::{self, Told};
@@ -13,6 +15,8 @@ use crate::estimator::sensor::Sensor;
 use crate::log::{MemoryLog, RowScreen};
 use crate::report::monitor::{MonitorRow, Naming};
 use crate::report::{Clock, Table};
+#[cfg(feature = "serve")]
+pub(in crate::cli) use file::NotResumed;
 use jiff::Timestamp;
 use out::Out;
 pub use out::RowsWanted;

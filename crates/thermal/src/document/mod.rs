@@ -49,6 +49,11 @@ pub struct Places {
 }
 
 impl Places {
+    /// Key and value of a path as they are written; a long value is cut.
+    pub fn written(&self, path: &str) -> Option<(&str, &str)> {
+        self.by_path.get(path).map(|place| (place.key.as_str(), place.text.as_str()))
+    }
+
     /// The place of a path, or of the innermost table around it that the document has.
     pub(crate) fn nearest(&self, path: &str) -> Option<(&str, &Place)> {
         let mut path = path;

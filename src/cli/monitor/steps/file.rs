@@ -1,0 +1,53 @@
+//! What a program needs that keeps state files itself: a check of readings before there are rows, going on from a file,
+//! and acknowledgements.
+use super::*;
+
+/// A time of rows that have dates.
+const DATES: StepTime = StepTime::Instant(0, String::new());
+
+/// Why a state file is not gone on with.
+pub(in crate::cli) enum NotResumed {
+    /// It is no whole state of this version.
+    Damaged(String),
+    /// It is one of another vessel, other sensors or other options.
+    Other(anyhow::Error),
+}
+
+impl Steps {
+    /// Finds out whether rows with these readings can be taken in.
+    pub(in crate::cli) fn check(&self, names: &[String]) -> anyhow::Result<()> {
+        let frame = Frame::of(names, DATES);
+        let (_, mut log) = frame.opened(&self.documents, true, &self.log_options())?;
+        Selection::new(
+            &mut log.reader,
+            self.sensors.clone(),
+            &self.beginning.vessel,
+            &[],
+            &Messages::kept(),
+        )?;
+        Ok(())
+    }
+
+    /// Goes on from the bytes of a state file that knows rows with dates and these readings.
+    ///
+    /// # Errors
+    /// The state is damaged, or belongs to something else; all stays as it is.
+    pub(in crate::cli) fn resume(&mut self, names: &[String], file: &[u8]) -> Result<(), NotResumed> {
+        let state = State::from_bytes(file).map_err(|reason| NotResumed::Damaged(reason.to_string()))?;
+        let frame = Frame::of(names, DATES);
+        let running = self.resumed(&frame, &state).map_err(NotResumed::Other)?;
+        (self.frame, self.running) = (frame.head(), Some(running));
+        Ok(())
+    }
+
+    /// Whether the fill is known, so that rows are taken in one by one.
+    pub(in crate::cli) fn has_begun(&self) -> bool {
+        self.running.is_some()
+    }
+
+    /// Acknowledges and confirms all alarms, as `--acknowledge` does.
+    pub(in crate::cli) fn acknowledge(&mut self, comment: &str) -> Vec<Told> {
+        let Some(Running { monitor, naming, .. }) = &mut self.running else { return Vec::new() };
+        monitor.acknowledge(comment).iter().map(|alarm| course::told_alarm(alarm, naming)).collect()
+    }
+}

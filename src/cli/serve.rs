@@ -1,0 +1,87 @@
+//! `cylwatch serve`: a gateway beside an MQTT broker. Rows of many cylinders in, each to a monitor of its own; verdicts, estimates, events and
+//! alarms out, those of `monitor` and `fleet`.
+//!
+//! | file | part |
+//! |---|---|
+//! | `document`, `config` | the configuration, as written and checked |
+//! | `mapping` | a message becomes a row of a cylinder |
+//! | `journal`, `keeper`, `recent` | rows and states on disk; what is guaranteed stands in `keeper` |
+//! | `publication`, `outbox` | what is published, and what has not arrived |
+//! | `link` | the broker |
+//! | `gateway` | the loop |
+mod config;
+mod document;
+mod gateway;
+mod journal;
+mod keeper;
+mod link;
+mod mapping;
+mod outbox;
+mod publication;
+mod recent;
+
+use super::interrupt;
+use super::message::Messages;
+use clap::Args;
+use gateway::Gateway;
+use keeper::Keeper;
+use link::Link;
+use std::path::PathBuf;
+
+/// Arguments of `serve`.
+#[derive(Debug, Args)]
+#[command(after_long_help = HELP)]
+pub(super) struct ServeArguments {
+    /// Configuration: a TOML file.
+    pub config: PathBuf,
+    /// Check the configuration and end.
+    #[arg(long)]
+    pub check: bool,
+}
+
+/// Runs until a signal comes.
+pub(super) fn run(arguments: ServeArguments, messages: &Messages) -> anyhow::Result<()> {
+    let (settings, broker) = config::read(&arguments.config)?;
+    if arguments.check {
+        messages.say(&format!("{} can be used", arguments.config.display()));
+        return Ok(());
+    }
+    interrupt::listen(|| {})?;
+    let keeper = Keeper::open(&settings, messages)?;
+    Gateway::new(&settings, keeper, Link::new(broker), messages).run()
+}
+
+const HELP: &str = "\
+The configuration names the broker, the store, cylinders and their types, and where a JSON message
+has its time and its readings:
+  [broker]
+  host = \"localhost\"              # port = 1883, protocol = \"5\" or \"3.1.1\", user, password_file or
+  client_id = \"depot-7\"           # password_env, keep_alive_s = 30, session_expiry_d = 7
+  [store]
+  folder = \"/var/lib/cylwatch\"    # states and journal; save_every_min = 10
+  [[type]]
+  name = \"rail\"
+  vessel = \"nitrogen-20l\"
+  options = { fill_pressure_bar = 200, fill_temperature_degc = 15, settled = true, limit_bar = 160 }
+  [[cylinder]]
+  name = \"A12\"
+  type = \"rail\"
+  topic = \"train/7/A12\"
+  [payload]
+  time = \"/t\"                     # clock = \"rfc3339\", \"seconds\", \"milliseconds\" or \"arrival\"
+  [[payload.reading]]
+  name = \"pressure_bar\"
+  at = \"/p\"
+  [[payload.reading]]
+  name = \"shoulder_degc\"
+  at = \"/temperature\"
+
+It publishes cylwatch/NAME/verdict, estimate and alarm/ALARM, which the broker keeps, and
+cylwatch/NAME/event, at quality of service 1. A comment to cylwatch/NAME/acknowledge acknowledges
+the alarms. Rows that were accepted and events survive a kill; see book/src/serve.md.
+
+Ctrl-C and SIGTERM save all states and end with exit code 0; 2 the configuration is wrong.
+
+Examples:
+  cylwatch serve gateway.toml --check
+  cylwatch serve gateway.toml";

@@ -1,0 +1,285 @@
+//! Settings from the configuration, checked: whatever is wrong with it is told before the broker is called.
+mod broker;
+
+use super::document::{Document, OptionsTable, TimeForm};
+use super::mapping::{Mapping, Pattern, Reading, has_filter, is_level};
+use crate::cli::fleet::{as_columns, vessel_beside};
+use crate::cli::monitor::Steps;
+use crate::cli::monitor_steps;
+use crate::thermal::ThermalError;
+use crate::thermal::document::{self, Places, check};
+use anyhow::{Context, anyhow, bail};
+pub(super) use broker::Broker;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// All that the gateway is told.
+pub(super) struct Settings {
+    /// Folder of states and journal.
+    pub folder: PathBuf,
+    pub save_every: Duration,
+    pub mapping: Mapping,
+    /// Calls of `monitor` by the names of the cylinders.
+    pub named: BTreeMap<String, Assigned>,
+    /// Call for cylinders of the pattern.
+    pub by_pattern: Option<Assigned>,
+    /// What results are published below.
+    pub prefix: String,
+    /// Most cylinders.
+    pub cylinders: usize,
+}
+
+/// The call of `monitor` for a cylinder.
+#[derive(Clone)]
+pub(super) struct Assigned(Vec<OsString>);
+
+impl Assigned {
+    /// Of tables at their paths; a later one counts more.
+    fn new(vessel: &str, tables: &[(String, &OptionsTable)], checked: &Checked<'_>) -> anyhow::Result<Self> {
+        let mut words: BTreeMap<String, String> = BTreeMap::new();
+        for (path, table) in tables {
+            let Value::Object(values) = serde_json::to_value(table)? else { continue };
+            for (field, value) in values {
+                match checked.word(&format!("{path}.{field}"), &value) {
+                    Some(word) => _ = words.insert(field, word),
+                    None if value == Value::Bool(false) => _ = words.remove(&field),
+                    None => {}
+                }
+            }
+        }
+        let call = ["monitor".into(), vessel_beside(checked.folder, vessel).into(), "<messages>".into()];
+        Ok(Self(call.into_iter().chain(words.into_values().map(OsString::from)).collect()))
+    }
+
+    /// A monitor that has not begun.
+    pub(super) fn monitor(&self) -> anyhow::Result<Steps> {
+        monitor_steps(&self.0, Vec::new()).map_err(|error| anyhow!("{}", as_columns(&format!("{error:#}"))))
+    }
+}
+
+/// The file while it is checked.
+struct Checked<'a> {
+    places: &'a Places,
+    folder: &'a Path,
+}
+
+impl Checked<'_> {
+    fn refuse<T>(&self, path: &str, value: &str, bound: &str, remedy: &str) -> anyhow::Result<T> {
+        Err(self.places.locate(check::broken(path, value, bound, remedy)).into())
+    }
+
+    /// File and line of a path.
+    fn at(&self, path: &str) -> String {
+        match self.places.locate(check::broken(path, "", "", "")) {
+            ThermalError::Document { file, line, .. } => format!("{file}:{line}"),
+            other => other.to_string(),
+        }
+    }
+
+    /// An option of the command line, in the unit in which it is written: states name it.
+    fn word(&self, path: &str, value: &Value) -> Option<String> {
+        let (key, text) = self.places.written(path)?;
+        let option = key.replace('_', "-");
+        match value {
+            Value::Null | Value::Bool(false) => None,
+            Value::Bool(true) => Some(format!("--{option}")),
+            Value::String(file) => Some(format!("--{option}={}", self.folder.join(file).display())),
+            // A number of TOML may be grouped.
+            _ => Some(format!("--{option}={}", text.replace('_', ""))),
+        }
+    }
+
+    /// A time within bounds.
+    fn seconds(
+        &self,
+        path: &str,
+        given: Option<f64>,
+        usual: f64,
+        range: (f64, f64),
+    ) -> anyhow::Result<Duration> {
+        let value = given.unwrap_or(usual);
+        if (range.0..=range.1).contains(&value) {
+            return Ok(Duration::from_secs_f64(value));
+        }
+        self.refuse(
+            path,
+            &value.to_string(),
+            &format!("between {} s and {} s", range.0, range.1),
+            "another time",
+        )
+    }
+}
+
+/// Reads and checks a configuration.
+///
+/// # Errors
+/// Names file, line, value, bound and remedy.
+pub(super) fn read(path: &Path) -> anyhow::Result<(Settings, Broker)> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).with_context(|| format!("{file} cannot be read"))?;
+    let (document, places) = document::read::<Document>(&text, &file)?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let checked = Checked { places: &places, folder: &folder };
+    Ok((settings(&document, &checked)?, checked.broker(document.broker)?))
+}
+
+fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settings> {
+    let limit = document.limits.cylinders.unwrap_or(10_000) as usize;
+    let message_bytes = document.limits.message_bytes.unwrap_or(65_536) as usize;
+    let prefix = document.publish.prefix.clone().unwrap_or_else(|| "cylwatch".to_owned());
+    if prefix.is_empty() || has_filter(&prefix) || prefix.starts_with('$') {
+        checked.refuse("publish.prefix", &prefix, "a topic without + and #", "cylwatch is usual")?;
+    }
+    if document.cylinder.len() > limit {
+        let count = document.cylinder.len();
+        checked.refuse(
+            "limits.cylinders",
+            &limit.to_string(),
+            &format!("at least {count}, the cylinders of this file"),
+            "raise it",
+        )?;
+    }
+    let readings = readings(document, checked)?;
+    let names: Vec<String> = readings.iter().map(|reading| reading.name.clone()).collect();
+    let types = types(document, &names, checked)?;
+    let kind = |path: String, name: &str| match types.get(name) {
+        Some(index) => Ok((format!("type[{index}].options"), &document.types[*index])),
+        None => Err(checked.places.locate(check_unknown(&path, name, types.keys()))),
+    };
+    let (mut named, mut topics) = (BTreeMap::new(), HashMap::new());
+    for (i, cylinder) in document.cylinder.iter().enumerate() {
+        let path = |key: &str| format!("cylinder[{i}].{key}");
+        if !is_level(&cylinder.name) {
+            checked.refuse(
+                &path("name"),
+                &cylinder.name,
+                "one level of a topic",
+                "leave out /, + and #, and at most 128 bytes",
+            )?;
+        }
+        if cylinder.topic.is_empty() || has_filter(&cylinder.topic) {
+            checked.refuse(
+                &path("topic"),
+                &cylinder.topic,
+                "a topic without + and #",
+                "a [pattern] has them",
+            )?;
+        }
+        let (of_kind, kind) = kind(path("type"), &cylinder.kind)?;
+        let tables = [(of_kind, &kind.options), (path("options"), &cylinder.options)];
+        let assigned = Assigned::new(&kind.vessel, &tables, checked)?;
+        assigned
+            .monitor()
+            .and_then(|steps| steps.check(&names))
+            .with_context(|| checked.at(&path("options")))?;
+        if named.insert(cylinder.name.clone(), assigned).is_some() {
+            checked.refuse(
+                &path("name"),
+                &cylinder.name,
+                "the name of one cylinder",
+                "it stands there twice",
+            )?;
+        }
+        if topics.insert(cylinder.topic.clone(), cylinder.name.clone()).is_some() {
+            checked.refuse(
+                &path("topic"),
+                &cylinder.topic,
+                "the topic of one cylinder",
+                "it stands there twice",
+            )?;
+        }
+    }
+    let (mut pattern, mut by_pattern) = (None, None);
+    if let Some(table) = &document.pattern {
+        pattern = Pattern::of(&table.topic, table.most as usize);
+        if pattern.is_none() {
+            let bound = "a topic with one level +, the name of a cylinder";
+            checked.refuse("pattern.topic", &table.topic, bound, "leave out #")?;
+        }
+        let (path, kind) = kind("pattern.type".to_owned(), &table.kind)?;
+        by_pattern = Some(Assigned::new(&kind.vessel, &[(path, &kind.options)], checked)?);
+    }
+    if named.is_empty() && pattern.is_none() {
+        bail!("{}: there is no cylinder: write a [[cylinder]] for each, or a [pattern]", checked.at(""));
+    }
+    let form = document.payload.clock.unwrap_or_default();
+    let time = document.payload.time.clone();
+    if time.is_none() && form != TimeForm::Arrival {
+        bail!(
+            "{}: payload time is missing: name its JSON pointer, or write clock = \"arrival\"",
+            checked.at("payload")
+        );
+    }
+    let folder = checked.folder.join(&document.store.folder);
+    let save_every =
+        checked.seconds("store.save_every_s", document.store.save_every_s, 600.0, (1.0, 86_400.0))?;
+    Ok(Settings {
+        folder,
+        save_every,
+        mapping: Mapping {
+            topics,
+            pattern,
+            time: time.unwrap_or_default(),
+            form,
+            readings,
+            message_bytes,
+            prefix: prefix.clone(),
+        },
+        named,
+        by_pattern,
+        prefix,
+        cylinders: limit,
+    })
+}
+
+fn readings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Vec<Reading>> {
+    let mut names = BTreeSet::new();
+    let mut readings = Vec::new();
+    let pointer = |path: &str, at: &str| match at.starts_with('/') {
+        true => Ok(()),
+        false => checked.refuse(path, at, "a JSON pointer", "begin it with /, as in /data/p"),
+    };
+    if let Some(time) = &document.payload.time {
+        pointer("payload.time", time)?;
+    }
+    for (i, table) in document.payload.reading.iter().enumerate() {
+        pointer(&format!("payload.reading[{i}].at"), &table.at)?;
+        if !names.insert(&table.name) {
+            checked.refuse(
+                &format!("payload.reading[{i}].name"),
+                &table.name,
+                "named once",
+                "leave one out",
+            )?;
+        }
+        readings.push(Reading { name: table.name.clone(), at: table.at.clone() });
+    }
+    Ok(readings)
+}
+
+/// The types by their names, each with a vessel, options and readings that a monitor takes.
+fn types(
+    document: &Document,
+    names: &[String],
+    checked: &Checked<'_>,
+) -> anyhow::Result<BTreeMap<String, usize>> {
+    let mut types = BTreeMap::new();
+    for (i, kind) in document.types.iter().enumerate() {
+        let path = format!("type[{i}].name");
+        let options = (format!("type[{i}].options"), &kind.options);
+        let assigned = Assigned::new(&kind.vessel, &[options], checked)?;
+        assigned.monitor().and_then(|steps| steps.check(names)).with_context(|| checked.at(&path))?;
+        if types.insert(kind.name.clone(), i).is_some() {
+            checked.refuse(&path, &kind.name, "the name of one type", "it stands there twice")?;
+        }
+    }
+    Ok(types)
+}
+
+fn check_unknown<'a>(path: &str, name: &str, known: impl Iterator<Item = &'a String>) -> ThermalError {
+    let known: Vec<&str> = known.map(String::as_str).collect();
+    check::broken(path, name, &format!("one of {}", known.join(", ")), "it is the name of a [[type]]")
+}

@@ -1,0 +1,146 @@
+//! The configuration as its file has it: tables and keys, SI values.
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Serialize};
+
+/// The whole file.
+#[derive(Deserialize)]
+pub(super) struct Document {
+    pub broker: BrokerTable,
+    pub store: StoreTable,
+    #[serde(rename = "type")]
+    pub types: Vec<TypeTable>,
+    #[serde(default)]
+    pub cylinder: Vec<CylinderTable>,
+    pub pattern: Option<PatternTable>,
+    pub payload: PayloadTable,
+    #[serde(default)]
+    pub publish: PublishTable,
+    #[serde(default)]
+    pub limits: LimitsTable,
+}
+
+/// The broker.
+#[derive(Deserialize)]
+pub(super) struct BrokerTable {
+    pub host: String,
+    pub port: Option<u16>,
+    pub protocol: Option<Protocol>,
+    pub client_id: String,
+    pub user: Option<String>,
+    /// Refused, whatever it holds.
+    pub password: Option<IgnoredAny>,
+    pub password_file: Option<String>,
+    pub password_env: Option<String>,
+    pub keep_alive_s: Option<f64>,
+    pub session_expiry_s: Option<f64>,
+}
+
+/// Version of the protocol.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub(super) enum Protocol {
+    #[default]
+    #[serde(rename = "5")]
+    V5,
+    #[serde(rename = "3.1.1")]
+    V311,
+}
+
+/// Where states are kept.
+#[derive(Deserialize)]
+pub(super) struct StoreTable {
+    pub folder: String,
+    pub save_every_s: Option<f64>,
+}
+
+/// Cylinders that are alike.
+#[derive(Deserialize)]
+pub(super) struct TypeTable {
+    pub name: String,
+    pub vessel: String,
+    #[serde(default)]
+    pub options: OptionsTable,
+}
+
+/// Options by the names that they have in `monitor`; the rest of the program checks them.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub(super) struct OptionsTable {
+    pub fill_pressure_pa: Option<f64>,
+    pub fill_temperature_k: Option<f64>,
+    pub fill_mass_kg: Option<f64>,
+    pub fill_sd_percent: Option<f64>,
+    pub settled: Option<bool>,
+    pub limit_pa: Option<f64>,
+    pub coldest_k: Option<f64>,
+    pub next_service_s: Option<f64>,
+    pub lateness_s: Option<f64>,
+    pub step_s: Option<f64>,
+    pub false_alarm_years: Option<f64>,
+    pub sensors: Option<String>,
+    pub commissioned: Option<String>,
+    pub learned_in: Option<String>,
+}
+
+/// A cylinder.
+#[derive(Deserialize)]
+pub(super) struct CylinderTable {
+    pub name: String,
+    #[serde(rename = "type")]
+    pub kind: String,
+    pub topic: String,
+    #[serde(default)]
+    pub options: OptionsTable,
+}
+
+/// Cylinders that are not named.
+#[derive(Deserialize)]
+pub(super) struct PatternTable {
+    pub topic: String,
+    #[serde(rename = "type")]
+    pub kind: String,
+    pub most: u32,
+}
+
+/// Where a message has its time and its readings.
+#[derive(Deserialize)]
+pub(super) struct PayloadTable {
+    pub time: Option<String>,
+    pub clock: Option<TimeForm>,
+    pub reading: Vec<ReadingTable>,
+}
+
+/// How a time is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum TimeForm {
+    /// A date with a zone.
+    #[default]
+    Rfc3339,
+    /// Seconds since 1970, UTC.
+    Seconds,
+    /// Milliseconds since 1970, UTC.
+    Milliseconds,
+    /// The time at which the message comes.
+    Arrival,
+}
+
+/// A reading.
+#[derive(Deserialize)]
+pub(super) struct ReadingTable {
+    /// Name of a column of a log, with its unit.
+    pub name: String,
+    /// JSON pointer.
+    pub at: String,
+}
+
+/// Where results go.
+#[derive(Default, Deserialize)]
+pub(super) struct PublishTable {
+    pub prefix: Option<String>,
+}
+
+/// Bounds of what is taken in.
+#[derive(Default, Deserialize)]
+pub(super) struct LimitsTable {
+    pub message_bytes: Option<u32>,
+    pub cylinders: Option<u32>,
+}

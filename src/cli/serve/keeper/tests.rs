@@ -1,0 +1,168 @@
+//! Kills at moments that a process can hardly be caught at.
+use super::*;
+use crate::cli::serve::config;
+use tempfile::{TempDir, tempdir};
+
+const LAST: u32 = 300;
+
+/// A cylinder that leaks 6 bar/h from minute 200 on.
+fn row(minute: u32) -> Delivered {
+    let residue = |by: u32| f64::from(minute * minute * by % 101) / 50.0 - 1.0;
+    let pressure = 200.0 + 0.02 * residue(11) - f64::from(minute.saturating_sub(200)) / 10.0;
+    let cells = vec![15.0 + 0.03 * residue(3), 15.0 + 0.03 * residue(7), pressure];
+    Delivered::Row(Accepted { time_ns: (1_767_225_600 + 60 * i64::from(minute)) * 1_000_000_000, cells })
+}
+
+fn settings() -> (TempDir, Settings) {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("gateway.toml");
+    let text = r#"
+[broker]
+host = "localhost"
+client_id = "a"
+[store]
+folder = "store"
+[[type]]
+name = "t"
+vessel = "nitrogen-20l"
+options = { fill_pressure_bar = 200, fill_temperature_degc = 15, settled = true }
+[[cylinder]]
+name = "B"
+type = "t"
+topic = "b"
+[payload]
+clock = "arrival"
+reading = [{ name = "shoulder_degc", at = "/s" }, { name = "valve_degc", at = "/v" }, { name = "pressure_bar", at = "/p" }]
+"#;
+    std::fs::write(&path, text).unwrap();
+    let (settings, _) = config::read(&path).unwrap();
+    (folder, settings)
+}
+
+fn opened(settings: &Settings) -> Keeper<'_> {
+    let messages: &'static Messages = Box::leak(Box::new(Messages::kept()));
+    Keeper::open(settings, messages).unwrap()
+}
+
+fn take(keeper: &mut Keeper<'_>, minutes: std::ops::Range<u32>) {
+    for minute in minutes {
+        keeper.record(&[("B".to_owned(), row(minute))]).unwrap();
+        assert!(keeper.take("B", row(minute)).unwrap().is_ok());
+    }
+}
+
+/// What a broker gets that takes everything: events and changes of alarms.
+fn deliver(keeper: &mut Keeper<'_>) -> Vec<String> {
+    let mut events = Vec::new();
+    while let Some(message) = keeper.outbox.hand(1) {
+        keeper.outbox.sent(1);
+        keeper.outbox.arrived(1);
+        events.extend(message.event_of.map(|_| message.payload));
+    }
+    events
+}
+
+fn state(settings: &Settings) -> Option<Vec<u8>> {
+    std::fs::read(settings.folder.join("states/B.state")).ok()
+}
+
+/// Events and state of a run that nothing disturbs.
+fn undisturbed() -> (Vec<String>, Vec<u8>) {
+    let (_folder, settings) = settings();
+    let mut keeper = opened(&settings);
+    take(&mut keeper, 0..LAST);
+    let events = deliver(&mut keeper);
+    assert!(events.len() >= 3 && keeper.save("B").unwrap(), "{events:?}");
+    (events, state(&settings).unwrap())
+}
+
+#[test]
+fn a_state_waits_until_its_events_have_arrived_so_that_a_kill_loses_none() {
+    let (_folder, settings) = settings();
+    let mut keeper = opened(&settings);
+    take(&mut keeper, 0..LAST);
+    assert!(!keeper.save("B").unwrap() && state(&settings).is_none());
+    // Killed before anything was sent.
+    drop(keeper);
+    let mut keeper = opened(&settings);
+    assert_eq!(deliver(&mut keeper), undisturbed().0);
+    assert!(keeper.save("B").unwrap());
+    assert!(keeper.unsaved().is_empty());
+}
+
+#[test]
+fn whatever_step_of_a_save_a_kill_comes_after_the_state_is_that_of_a_run_without_it() {
+    let (expected_events, expected) = undisturbed();
+    for step in 0..5 {
+        let (_folder, settings) = settings();
+        let mut keeper = opened(&settings);
+        take(&mut keeper, 0..120);
+        let mut events = deliver(&mut keeper);
+        assert!(keeper.save("B").unwrap());
+        let first = state(&settings).unwrap();
+        take(&mut keeper, 120..230);
+        events.extend(deliver(&mut keeper));
+        keeper.turn_over().unwrap();
+        take(&mut keeper, 230..260);
+        events.extend(deliver(&mut keeper));
+        match step {
+            // Before the save.
+            0 => {}
+            // The hash is in the journal, and the state is not written.
+            1 => {
+                assert!(keeper.save("B").unwrap());
+                std::fs::write(settings.folder.join("states/B.state"), &first).unwrap();
+            }
+            // The state is written.
+            2 => assert!(keeper.save("B").unwrap()),
+            // The old segments are gone.
+            3 => {
+                assert!(keeper.save("B").unwrap());
+                keeper.turn_over().unwrap();
+                keeper.turn_over().unwrap();
+            }
+            // A row is in the journal, and the monitor has not seen it.
+            _ => keeper.record(&[("B".to_owned(), row(260))]).unwrap(),
+        }
+        drop(keeper);
+        let mut keeper = opened(&settings);
+        take(&mut keeper, if step == 4 { 261..LAST } else { 260..LAST });
+        events.extend(deliver(&mut keeper));
+        assert!(keeper.save("B").unwrap());
+        assert!(state(&settings).unwrap() == expected, "step {step}");
+        events.sort();
+        events.dedup();
+        let mut wanted = expected_events.clone();
+        wanted.sort();
+        assert_eq!(events, wanted, "step {step}");
+    }
+}
+
+#[test]
+fn a_monitor_that_began_anew_begins_there_again_after_a_kill_before_and_after_the_old_state_is_set_aside() {
+    for is_back in [false, true] {
+        let (_folder, settings) = settings();
+        let mut keeper = opened(&settings);
+        take(&mut keeper, 0..100);
+        deliver(&mut keeper);
+        assert!(keeper.save("B").unwrap());
+        let before = state(&settings).unwrap();
+        keeper.begin_anew("B", "a reason").unwrap();
+        assert!(state(&settings).is_none());
+        if is_back {
+            std::fs::write(settings.folder.join("states/B.state"), before).unwrap();
+        }
+        take(&mut keeper, 100..200);
+        drop(keeper);
+        let mut keeper = opened(&settings);
+        let events = deliver(&mut keeper);
+        assert!(events.len() == 1 && events[0].contains("cold-start"), "{events:?}");
+        assert!(keeper.save("B").unwrap());
+        let (_other, fresh) = self::settings();
+        let mut alone = opened(&fresh);
+        take(&mut alone, 100..200);
+        deliver(&mut alone);
+        assert!(alone.save("B").unwrap());
+        assert!(state(&settings) == state(&fresh));
+    }
+}

@@ -1,0 +1,90 @@
+//! What is wrong with a configuration, a message or a state, and what becomes of it.
+use super::{Broker, configuration, end, gateway, listen, publish, said, time, wait};
+use crate::support::{refused, run};
+use tempfile::tempdir;
+
+#[test]
+fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
+    let folder = tempdir().unwrap();
+    let check = ["serve", "gateway.toml", "--check"];
+    let right = configuration(1883, "5");
+    std::fs::write(folder.path().join("gateway.toml"), &right).unwrap();
+    assert_eq!(run(folder.path(), &check).code, Some(0));
+    for (from, to, words) in [
+        ("client_id", "clint_id", &["gateway.toml:6", "clint_id", "client_id"][..]),
+        ("\"5\"", "\"4\"", &["gateway.toml:5", "protocol", "3.1.1"]),
+        ("client_id =", "password = \"sesame\"\nclient_id =", &["gateway.toml:6", "password_file"]),
+        ("client_id =", "password_env = \"NOT_THERE\"\nclient_id =", &["NOT_THERE"]),
+        ("client_id =", "keep_alive_h = 30\nclient_id =", &["gateway.toml:6", "keep_alive_h", "30"]),
+        ("save_every_s = 1", "save_every_s = 0", &["gateway.toml:9", "save_every_s", "between"]),
+        ("nitrogen-20l", "nitrogen-7l", &["nitrogen-7l"]),
+        ("fill_pressure_bar = 200", "fill_pressure_l = 200", &["gateway.toml:13", "fill_pressure_l"]),
+        ("fill_pressure_bar = 200", "fill_pressure_bar = -5", &["gateway.toml:1", "-5"]),
+        ("type = \"rail\"", "type = \"rial\"", &["gateway.toml:16", "rial", "rail, settled"]),
+        ("topic = \"train/A\"", "topic = \"train/+\"", &["gateway.toml:17", "[pattern]"]),
+        ("topic = \"train/B\"", "topic = \"train/A\"", &["gateway.toml:22", "twice"]),
+        ("name = \"B\"", "name = \"A\"", &["gateway.toml:20", "twice"]),
+        ("name = \"B\"", "name = \"B/C\"", &["gateway.toml:20", "one level"]),
+        ("depot/+/gas", "depot/#", &["gateway.toml:29", "one level +"]),
+        ("time = \"/t\"\n", "", &["payload time", "arrival"]),
+        ("/temps/0", "temps/0", &["gateway.toml:36", "begin it with /"]),
+        ("pressure_bar\"", "pressure_l\"", &["pressure_l"]),
+    ] {
+        let wrong = right.replacen(from, to, 1);
+        assert_ne!(wrong, right, "{from}");
+        std::fs::write(folder.path().join("gateway.toml"), wrong).unwrap();
+        refused(folder.path(), &check, words);
+        assert!(!run(folder.path(), &check).stderr.contains("sesame"));
+    }
+}
+
+#[test]
+fn what_cannot_be_used_is_said_once_and_counted_and_a_damaged_state_is_set_aside() {
+    let folder = tempdir().unwrap();
+    let folder = folder.path();
+    let Some(broker) = Broker::begin(folder) else { return };
+    std::fs::write(folder.join("gateway.toml"), configuration(broker.port, "5")).unwrap();
+    std::fs::create_dir_all(folder.join("store/states")).unwrap();
+    std::fs::write(folder.join("store/states/A.state"), b"cylwatch-monitor-state 3 bytes 9 sha256 0\nx")
+        .unwrap();
+    let heard = listen(broker.port, "listener");
+    let running = gateway(folder);
+    wait("connected", || said(folder).contains("connected"));
+    let row = |topic: &str, payload: &str| (topic.to_owned(), payload.to_owned());
+    let good = |minute| format!("{{\"t\":\"{}\",\"p\":200,\"temps\":[15,15]}}", time(minute));
+    let large = format!("{{\"t\":\"{}\"", " ".repeat(70_000));
+    publish(
+        broker.port,
+        &[
+            row("train/A", "no json"),
+            row("train/A", "no json"),
+            row("train/A", "{\"t\":1}"),
+            row("train/B", &large),
+            row("depot/C/gas", &good(0)),
+            row("depot/D/gas", &good(0)),
+            row("train/A", &good(0)),
+            row("train/A", &good(5)),
+        ],
+    );
+    wait("the last row", || heard.lock().unwrap().iter().any(|(topic, _, _)| topic == "cylwatch/A/estimate"));
+    end(running, folder);
+    let said = said(folder);
+    for words in [
+        "A.state: it is cut short",
+        "begins anew",
+        "3 rows of 3 cylinders",
+        "it is no JSON (2)",
+        "it has no time of the stated form (1)",
+        "it is larger than message_bytes (1)",
+        "there are as many cylinders as the configuration allows (1)",
+    ] {
+        assert!(said.contains(words), "`{words}` is missing in: {said}");
+    }
+    assert_eq!(said.matches("A: a message is left out: it is no JSON").count(), 1, "{said}");
+    let heard = heard.lock().unwrap();
+    let events: Vec<_> = heard.iter().filter(|(topic, _, _)| topic == "cylwatch/A/event").collect();
+    assert!(events.len() == 1 && events[0].1.contains("cold-start"), "{events:?}");
+    let mut states = crate::support::files(&folder.join("store/states"));
+    states.retain(|name| name.starts_with('A'));
+    assert!(states.len() == 2 && states[1].ends_with(".aside"), "{states:?}");
+}
