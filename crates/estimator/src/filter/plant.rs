@@ -64,7 +64,7 @@ pub trait Plant: StateSpace + Clone + Debug {
         self.noise_variance(j, x)
     }
 
-    /// Longest part of an interval over which the coefficients stay, s; at rest they [stay longer](super::step::Steps).
+    /// Longest part of an interval over which the coefficients stay, s; at rest they stay longer.
     fn longest_step_s(&self) -> f64 {
         f64::INFINITY
     }
