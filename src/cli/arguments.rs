@@ -84,6 +84,14 @@ pub(super) enum Command {
     /// Monitor cylinders whose readings come through an MQTT broker, for years: verdicts, events and alarms as messages.
     #[cfg(feature = "serve")]
     Serve(ServeArguments),
+    /// This program has no gateway.
+    #[cfg(not(feature = "serve"))]
+    #[command(hide = true)]
+    Serve {
+        /// Whatever it was given.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        anything: Vec<String>,
+    },
     /// Find the leak thresholds of a vessel by simulation, with the rate of false alarms that they have; twenty minutes.
     Commission(Box<CommissionArguments>),
     /// Compile a cylinder into bytes for a controller, which reads no files.

@@ -96,6 +96,10 @@ fn run(command: Command, messages: &Messages) -> anyhow::Result<ExitCode> {
         Command::Calibrate(arguments) => calibrate::run(*arguments, messages),
         #[cfg(feature = "serve")]
         Command::Serve(arguments) => serve::run(arguments, messages),
+        #[cfg(not(feature = "serve"))]
+        Command::Serve { .. } => Err(anyhow::anyhow!(
+            "this program was built without the gateway: build it with `cargo build --release --features serve`"
+        )),
         Command::Properties(arguments) => properties::run(arguments, messages),
         Command::Init(arguments) => init::run(arguments, messages),
         Command::Schema(arguments) => schema::run(arguments),

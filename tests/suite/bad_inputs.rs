@@ -220,3 +220,12 @@ fn options_that_make_no_sense_are_refused_with_what_would() {
     }
     assert_eq!(files(folder.path()), ["log.csv", "scenario.toml", "vessel.toml"]);
 }
+
+#[cfg(not(feature = "serve"))]
+#[test]
+fn a_program_without_the_gateway_says_how_to_build_one_that_has_it() {
+    let folder = tempdir().unwrap();
+    for arguments in [&["serve"][..], &["serve", "gateway.toml", "--check"]] {
+        refused(folder.path(), arguments, &["--features serve"]);
+    }
+}
