@@ -1,4 +1,5 @@
 //! Everything that can go wrong in this crate.
+use alloc::borrow::Cow;
 use alloc::boxed::Box;
 use cylwatch_estimator::thermal::shown;
 
@@ -32,7 +33,7 @@ pub enum DetectorError {
         /// Its value; of a list the number of its elements.
         value: f64,
         /// What it must be.
-        bound: &'static str,
+        bound: Cow<'static, str>,
     },
     /// The gas has no such state.
     #[error(transparent)]

@@ -10,8 +10,9 @@
 use alloc::vec::Vec;
 use core::hash::Hasher;
 use postcard::ser_flavors::Flavor;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::ser::SerializeSeq;
+use serde::{Serialize, Serializer};
 use siphasher::sip128::{Hasher128, SipHasher13};
 
 const HEAD: usize = 8 + 4 + SUM + 8;
@@ -106,6 +107,17 @@ pub fn fingerprint(of: &impl Serialize) -> Fingerprint {
 
 fn sum(bytes: &[u8]) -> [u8; SUM] {
     SipHasher13::new().hash(bytes).as_bytes()
+}
+
+/// Elements as those of a list that need not be made: they are counted first.
+pub(crate) struct List<I>(pub I);
+
+impl<I: Iterator<Item: Serialize> + Clone> Serialize for List<I> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut to = serializer.serialize_seq(Some(self.0.clone().count()))?;
+        self.0.clone().try_for_each(|element| to.serialize_element(&element))?;
+        to.end()
+    }
 }
 
 /// Bytes of which the hash is wanted alone.

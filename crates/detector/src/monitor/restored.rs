@@ -26,17 +26,15 @@ pub(super) fn require(
     value: f64,
     bound: &'static str,
 ) -> Result<(), DetectorError> {
-    if ok { Ok(()) } else { Err(DetectorError::Restored { what, value, bound }) }
+    if ok { Ok(()) } else { Err(DetectorError::Restored { what, value, bound: bound.into() }) }
 }
 
-/// A list that is no longer than so much.
-pub(super) fn at_most(
-    most: usize,
-    what: &'static str,
-    length: usize,
-    bound: &'static str,
-) -> Result<(), DetectorError> {
-    require(length <= most, what, length as f64, bound)
+/// A number, or the length of a list, that is no more than so much.
+pub(super) fn at_most(most: usize, what: &'static str, length: usize) -> Result<(), DetectorError> {
+    if length <= most {
+        return Ok(());
+    }
+    Err(DetectorError::Restored { what, value: length as f64, bound: format!("at most {most}").into() })
 }
 
 /// A count that has place for more.

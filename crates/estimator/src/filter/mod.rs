@@ -51,7 +51,7 @@ pub(crate) use smoother::Backward;
 pub use smoother::{Smoothed, smooth};
 pub use state_space::{Linearisation, StateSpace};
 pub use step::StepTransition;
-pub(crate) use step::{DoublingMemory, Steps};
+pub(crate) use step::{StepMemory, Steps};
 pub use ud::UdFactors;
 pub use ud_bank::Pattern;
 #[cfg(all(test, feature = "design"))]

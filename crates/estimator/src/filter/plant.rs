@@ -3,7 +3,7 @@ use core::fmt::Debug;
 
 use super::dense::add_product_transposed;
 use super::gate::Gate;
-use super::state_space::StateSpace;
+use super::state_space::{Linearisation, StateSpace};
 use super::step::StepTransition;
 use super::ud_bank::Pattern;
 
@@ -106,6 +106,8 @@ pub trait Plant: StateSpace + Clone + Debug {
     /// As [`StateSpace::propagate`].
     fn transition(&mut self, x: &mut [f64], dt_s: f64, step: &mut StepTransition) -> Result<(), Self::Error> {
         let StepTransition { phi, noise, linear, .. } = step;
+        let zeros = || Linearisation::zeros(self.states(), self.leading(), self.noises());
+        let linear = linear.get_or_insert_with(zeros);
         self.propagate(x, dt_s, Some(linear))?;
         phi.copy_from(&linear.phi);
         noise.fill(0.0);

@@ -2,7 +2,7 @@
 use alloc::vec::Vec;
 use nalgebra::{DMatrix, DVector};
 
-use super::dense::add_product;
+use super::step::compose;
 
 /// One step of a filter: plain data.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,12 +98,7 @@ impl StepRecord {
 
     /// Part of the interval with the transition `phi`: (leading, n).
     pub(crate) fn append(&mut self, phi: &DMatrix<f64>) {
-        let m = phi.nrows();
-        let (moving, constant) = phi.as_slice().split_at(m * m);
-        let product = self.product.as_mut_slice();
-        product[..m * m].fill(0.0);
-        product[m * m..].copy_from_slice(constant);
-        add_product(product, 1.0, moving, self.phi.as_slice(), m);
+        compose(phi, &self.phi, &mut self.product);
         core::mem::swap(&mut self.product, &mut self.phi);
     }
 

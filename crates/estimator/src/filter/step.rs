@@ -68,18 +68,19 @@ pub struct StepTransition {
     pub noise: DMatrix<f64>,
     /// Noise covariance by each source of [`Plant::intensities`](super::Plant::intensities), per unit of its intensity.
     pub(crate) by_source: Vec<DMatrix<f64>>,
-    pub(super) linear: Linearisation,
+    /// Of a plant that moves by its linearisation.
+    pub(super) linear: Option<Linearisation>,
 }
 
-/// Memory to double a transition.
+/// Memory to put transitions one after the other.
 #[derive(Clone, Debug)]
-pub(crate) struct DoublingMemory {
+pub(crate) struct StepMemory {
     phi: DMatrix<f64>,
     carried: DMatrix<f64>,
     moved: Vec<f64>,
 }
 
-impl DoublingMemory {
+impl StepMemory {
     /// For transitions of `n` states, of which `leading` move.
     pub(crate) fn new(n: usize, leading: usize) -> Self {
         Self {
@@ -91,43 +92,80 @@ impl DoublingMemory {
 }
 
 impl StepTransition {
-    /// Of `n` states, of which `leading` move, so many noises and so many sources whose intensity is a member's own.
-    pub(crate) fn zeros(n: usize, leading: usize, noises: usize, sources: usize) -> Self {
+    /// Of `n` states, of which `leading` move, and so many sources whose intensity is a member's own.
+    pub(crate) fn zeros(n: usize, leading: usize, sources: usize) -> Self {
         let square = DMatrix::zeros(leading, leading);
         Self {
             phi: DMatrix::zeros(leading, n),
             by_source: vec![square.clone(); sources],
             noise: square,
-            linear: Linearisation::zeros(n, leading, noises),
+            linear: None,
         }
     }
 
+    /// No step, of a plant whose members share all noise.
+    pub(crate) fn clear(&mut self) {
+        self.phi.fill_with_identity();
+        self.noise.fill(0.0);
+    }
+
+    /// Another step after this one, of a plant whose members share all noise.
+    pub(crate) fn append(&mut self, next: &Self, memory: &mut StepMemory) {
+        carry(&next.phi, &mut self.noise, &mut memory.carried);
+        self.noise.copy_from(&next.noise);
+        add_carried(&mut self.noise, &memory.carried, &next.phi);
+        compose(&next.phi, &self.phi, &mut memory.phi);
+        core::mem::swap(&mut self.phi, &mut memory.phi);
+    }
+
     /// Twice as long a step with the same coefficients; it has moved a state to `x` from `before`.
-    pub(crate) fn double(&mut self, before: &[f64], x: &mut [f64], memory: &mut DoublingMemory) {
-        let DoublingMemory { phi: doubled, carried, moved } = memory;
-        let (m, phi) = (self.phi.nrows(), self.phi.as_slice());
-        let (moving, constant) = phi.split_at(m * m);
+    pub(crate) fn double(&mut self, before: &[f64], x: &mut [f64], memory: &mut StepMemory) {
+        let StepMemory { phi: doubled, carried, moved } = memory;
+        let m = self.phi.nrows();
         moved.iter_mut().zip(&*x).zip(before).for_each(|((to, x), before)| *to = x - before);
-        for (column, by) in moving.chunks_exact(m.max(1)).zip(moved) {
+        for (column, by) in self.phi.as_slice().chunks_exact(m.max(1)).zip(moved) {
             axpy(*by, column, &mut x[..m]);
         }
         for noise in core::iter::once(&mut self.noise).chain(&mut self.by_source) {
-            noise.fill_lower_triangle_with_upper_triangle();
-            carried.fill(0.0);
-            add_product(carried.as_mut_slice(), 1.0, moving, noise.as_slice(), m);
-            add_product_transposed(noise.as_mut_slice(), carried.as_slice(), |_| 1.0, moving, m, m);
+            carry(&self.phi, noise, carried);
+            add_carried(noise, carried, &self.phi);
         }
-        let (moving_twice, constant_twice) = doubled.as_mut_slice().split_at_mut(m * m);
-        moving_twice.fill(0.0);
-        constant_twice.copy_from_slice(constant);
-        add_product(doubled.as_mut_slice(), 1.0, moving, phi, m);
+        compose(&self.phi, &self.phi, doubled);
         core::mem::swap(&mut self.phi, doubled);
     }
+}
+
+/// Leading rows of the transition `next` after `phi`, in `product`: (leading, n) each. Constants stay.
+pub(super) fn compose(next: &DMatrix<f64>, phi: &DMatrix<f64>, product: &mut DMatrix<f64>) {
+    let m = next.nrows();
+    let (moving, constant) = next.as_slice().split_at(m * m);
+    let product = product.as_mut_slice();
+    product[..m * m].fill(0.0);
+    product[m * m..].copy_from_slice(constant);
+    add_product(product, 1.0, moving, phi.as_slice(), m);
+}
+
+/// `Phi N` of a covariance by its upper triangle.
+fn carry(phi: &DMatrix<f64>, noise: &mut DMatrix<f64>, carried: &mut DMatrix<f64>) {
+    let m = phi.nrows();
+    noise.fill_lower_triangle_with_upper_triangle();
+    carried.fill(0.0);
+    add_product(carried.as_mut_slice(), 1.0, &phi.as_slice()[..m * m], noise.as_slice(), m);
+}
+
+/// `N <- N + (Phi N') Phi^T`.
+fn add_carried(noise: &mut DMatrix<f64>, carried: &DMatrix<f64>, phi: &DMatrix<f64>) {
+    let m = phi.nrows();
+    let moving = &phi.as_slice()[..m * m];
+    add_product_transposed(noise.as_mut_slice(), carried.as_slice(), |_| 1.0, moving, m, m);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::DVector;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
 
     #[test]
     fn steps_become_longer_and_fill_the_interval() {
@@ -151,5 +189,59 @@ mod tests {
                 steps.len()
             );
         }
+    }
+
+    #[test]
+    fn parts_of_an_interval_follow_each_other() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let (n, m) = (7, 4);
+        let (mut parts, mut part) = (StepTransition::zeros(n, m, 0), StepTransition::zeros(n, m, 0));
+        let mut memory = StepMemory::new(n, m);
+        parts.clear();
+        let (mut f, mut q) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
+        for _ in 0..3 {
+            let phi = DMatrix::from_fn(m, n, |_, _| rng.random_range(-1.0..1.0));
+            let noise = DMatrix::from_diagonal(&DVector::from_fn(m, |_, _| rng.random_range(0.1..1.0)));
+            part.phi.copy_from(&phi);
+            part.noise.copy_from(&noise);
+            parts.append(&part, &mut memory);
+            let (mut step, mut added) = (DMatrix::identity(n, n), DMatrix::zeros(n, n));
+            step.rows_mut(0, m).copy_from(&phi);
+            added.view_mut((0, 0), (m, m)).copy_from(&noise);
+            q = &step * q * step.transpose() + added;
+            f = step * f;
+        }
+        assert!((&parts.phi - f.rows(0, m)).abs().max() < 1e-12);
+        let moving = q.view((0, 0), (m, m)).into_owned();
+        assert!((parts.noise.upper_triangle() - moving.upper_triangle()).abs().max() < 1e-12);
+    }
+
+    #[test]
+    fn a_doubled_step_is_one_after_itself_and_goes_on_as_it_has_moved() {
+        let (n, m) = (5, 3);
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let mut step = StepTransition::zeros(n, m, 1);
+        step.phi = DMatrix::from_fn(m, n, |_, _| rng.random_range(-1.0..1.0));
+        step.noise = DMatrix::from_diagonal_element(m, m, 0.3);
+        step.by_source[0] = DMatrix::from_diagonal_element(m, m, 0.7);
+        let (mut twice, mut memory) = (step.clone(), StepMemory::new(n, m));
+        twice.append(&step, &mut memory);
+        // `x' = Phi x + c` twice, with constants that stay.
+        let (start, c) = (DVector::from_fn(n, |i, _| 1.0 + i as f64), DVector::from_element(m, 0.2));
+        let moved = |x: &DVector<f64>| {
+            let mut after = x.clone();
+            after.rows_mut(0, m).copy_from(&(&step.phi * x + &c));
+            after
+        };
+        let once = moved(&start);
+        let (expected, mut x) = (moved(&once), once.as_slice().to_vec());
+        step.clone().double(start.as_slice(), &mut x, &mut memory);
+        assert!((DVector::from_vec(x) - expected).amax() < 1e-12);
+        let mut doubled = step.clone();
+        doubled.double(start.as_slice(), &mut once.as_slice().to_vec(), &mut memory);
+        assert_eq!(doubled.phi, twice.phi);
+        assert_eq!(doubled.noise.upper_triangle(), twice.noise.upper_triangle());
+        let ratio = doubled.by_source[0].component_div(&doubled.noise);
+        assert!(ratio.iter().all(|ratio| (ratio / (0.7 / 0.3) - 1.0).abs() < 1e-9), "{ratio}");
     }
 }

@@ -22,11 +22,10 @@ use nalgebra::DMatrix;
 use super::settings::ObserverSettings;
 use super::states::States;
 use crate::EstimatorError;
-use crate::filter::{DoublingMemory, Linearisation, Plant, StateSpace, StepTransition, Steps};
+use crate::filter::{Linearisation, Plant, StateSpace, StepMemory, StepTransition, Steps};
 use crate::sensor::Sensor;
 use crate::thermal::reduced::{ReducedModel, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
-use noise::Parts;
 use output::{Target, reads_pressure};
 use structure::Structure;
 use transition::{Transition, Walking};
@@ -295,21 +294,21 @@ impl Cylinder {
     ) -> Result<(), EstimatorError> {
         let (n, leading) = (self.states.count(), self.states.leading);
         let mut memory = self.work.divided.take().unwrap_or_else(|| Box::new(Divided::new(n, leading)));
-        memory.parts.clear();
+        memory.whole.clear();
         let part_s = steps.part_s;
         let outcome = steps.into_iter().try_for_each(|doublings| {
-            let Divided { before, step, doubling, parts } = &mut *memory;
+            let Divided { before, step, whole, memory } = &mut *memory;
             before.copy_from_slice(x);
             self.step(x, part_s, true)?;
             self.work.transition.write_phi(&mut step.phi);
             step.noise.copy_from(&self.work.noise);
-            (0..doublings).for_each(|_| step.double(before, x, doubling));
-            parts.append(&step.phi, &step.noise);
+            (0..doublings).for_each(|_| step.double(before, x, memory));
+            whole.append(step, memory);
             Ok(())
         });
         if let Some(linear) = linear {
-            linear.phi.copy_from(&memory.parts.phi);
-            self.work.noise.copy_from(&memory.parts.noise);
+            linear.phi.copy_from(&memory.whole.phi);
+            self.work.noise.copy_from(&memory.whole.noise);
         }
         self.work.divided = Some(memory);
         outcome
@@ -321,17 +320,18 @@ impl Cylinder {
 struct Divided {
     before: Vec<f64>,
     step: StepTransition,
-    doubling: DoublingMemory,
-    parts: Parts,
+    /// All steps so far.
+    whole: StepTransition,
+    memory: StepMemory,
 }
 
 impl Divided {
     fn new(n: usize, leading: usize) -> Self {
         Self {
             before: vec![0.0; n],
-            step: StepTransition::zeros(n, leading, 0, 0),
-            doubling: DoublingMemory::new(n, leading),
-            parts: Parts::new(n, leading),
+            step: StepTransition::zeros(n, leading, 0),
+            whole: StepTransition::zeros(n, leading, 0),
+            memory: StepMemory::new(n, leading),
         }
     }
 }

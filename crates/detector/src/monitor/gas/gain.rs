@@ -29,7 +29,12 @@ pub(in crate::monitor) struct GainWatch {
 impl GainWatch {
     /// Checks one that was saved.
     pub(crate) fn validate(&self) -> Result<(), DetectorError> {
-        restored::at_most(KEPT, "gains.recent", self.recent.len(), "those of six hours")
+        restored::require(
+            self.recent.len() <= KEPT,
+            "gains.recent",
+            self.recent.len() as f64,
+            "those of six hours",
+        )
     }
 
     /// Take in a mass, kg, of a cylinder that was filled with so much, kg; when a filling began that is over now, s, and its gain, kg.

@@ -33,7 +33,7 @@ impl Bins {
     /// Checks one that was saved.
     pub(super) fn validate(&self, step_s: f64, of: &Restored) -> Result<(), DetectorError> {
         restored::require(self.step_s == step_s, "intake.bins.step_s", self.step_s, "that of the settings")?;
-        restored::at_most(ROWS_AT_MOST, "intake.bins.rows", self.rows, "at most 256")?;
+        restored::at_most(ROWS_AT_MOST, "intake.bins.rows", self.rows)?;
         of.each("intake.bins.readings", self.readings.len())?;
         for readings in &self.readings {
             let count = readings.len();

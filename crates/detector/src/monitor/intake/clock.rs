@@ -57,7 +57,7 @@ impl Guard {
         restored::require(believed(*offset_s), "intake.offset_s", *offset_s, "at most 2e12 s either way")?;
         let known = believed(*latest_s) || *latest_s == f64::NEG_INFINITY;
         restored::require(known, "intake.latest_s", *latest_s, "at most 2e12 s either way")?;
-        restored::at_most(CONFIRM_JUMP, "intake.run", run.len(), "at most 3")?;
+        restored::at_most(CONFIRM_JUMP, "intake.run", run.len())?;
         run.iter().try_for_each(|stray| of.each("intake.run", stray.readings.len()))
     }
 

@@ -19,8 +19,8 @@ pub(super) struct UsualInterval {
 impl UsualInterval {
     /// Checks one that was saved.
     pub(super) fn validate(&self) -> Result<(), DetectorError> {
-        restored::at_most(REMEMBERED, "intake.usual.recent_s", self.recent_s.len(), "at most 15")?;
-        restored::at_most(REMEMBERED - 1, "intake.usual.next", self.next, "at most 14")
+        restored::at_most(REMEMBERED, "intake.usual.recent_s", self.recent_s.len())?;
+        restored::at_most(REMEMBERED - 1, "intake.usual.next", self.next)
     }
 
     /// Take an interval, s; one that is not positive is none.

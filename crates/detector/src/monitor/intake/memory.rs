@@ -50,12 +50,12 @@ impl Default for Memory {
 impl Memory {
     /// Checks one that was saved.
     pub(super) fn validate(&self) -> Result<(), DetectorError> {
-        restored::at_most(ROWS as usize, "intake.memory.rows", self.rows as usize, "at most 600")?;
+        restored::at_most(ROWS as usize, "intake.memory.rows", self.rows as usize)?;
         let youngest = usize::from(self.youngest);
-        restored::at_most(GENERATIONS - 1, "intake.memory.youngest", youngest, "at most 3")?;
-        restored::at_most(GAPS, "intake.memory.gaps", self.gaps.len(), "at most 16")?;
+        restored::at_most(GENERATIONS - 1, "intake.memory.youngest", youngest)?;
+        restored::at_most(GAPS, "intake.memory.gaps", self.gaps.len())?;
         let longest = self.generations.iter().map(Generation::len).max().unwrap_or(0);
-        restored::at_most(ROWS as usize, "intake.memory.generations", longest, "at most 600")
+        restored::at_most(ROWS as usize, "intake.memory.generations", longest)
     }
 
     /// Remember a row.

@@ -35,7 +35,7 @@ pub(super) struct Order {
 impl Order {
     /// Checks one that was saved.
     pub(super) fn validate(&self, of: &Restored) -> Result<(), DetectorError> {
-        restored::at_most(HELD_AT_MOST + 1, "intake.waiting", self.waiting.len(), "at most 4097")?;
+        restored::at_most(HELD_AT_MOST + 1, "intake.waiting", self.waiting.len())?;
         self.waiting.iter().chain(&self.handed_out).try_for_each(|row| row.validate("intake.waiting", of))
     }
 

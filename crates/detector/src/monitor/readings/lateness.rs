@@ -180,8 +180,8 @@ pub(in crate::monitor) struct LagMeter {
 impl LagMeter {
     /// Checks one that was saved.
     pub(super) fn validate(&self) -> Result<(), DetectorError> {
-        restored::at_most(POINTS, "lags.points", self.points.len(), "at most 3")?;
-        restored::at_most(LONGEST + 1, "lags.differences", self.differences.len(), "at most 5")?;
+        restored::at_most(POINTS, "lags.points", self.points.len())?;
+        restored::at_most(LONGEST + 1, "lags.differences", self.differences.len())?;
         self.grid.validate()
     }
 
@@ -238,7 +238,12 @@ impl DelayLine {
     /// Checks one that was saved.
     pub(crate) fn validate(&self, of: &Restored) -> Result<(), DetectorError> {
         if self.delays_s.is_empty() {
-            return restored::at_most(0, "delays.rows", self.rows.len(), "0 without delays");
+            return restored::require(
+                self.rows.is_empty(),
+                "delays.rows",
+                self.rows.len() as f64,
+                "0 without delays",
+            );
         }
         of.each("delays.delays_s", self.delays_s.len())?;
         for &delay_s in &self.delays_s {

@@ -157,7 +157,12 @@ impl Parity {
             restored::count("parity.named.windows", windows.into())?;
         }
         restored::count("parity.window.rows", self.window.map_or(0, |window| window.rows.into()))?;
-        restored::at_most(WINDOWS, "parity.calm", self.calm.len(), "those of three days")
+        restored::require(
+            self.calm.len() <= WINDOWS,
+            "parity.calm",
+            self.calm.len() as f64,
+            "those of three days",
+        )
     }
 
     /// Of thermometers where the model misses so much of a temperature on the surface, K.

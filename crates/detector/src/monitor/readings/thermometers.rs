@@ -126,7 +126,7 @@ pub struct Surroundings {
 impl Pair {
     /// Checks one that was saved.
     pub(crate) fn validate(&self) -> Result<(), DetectorError> {
-        restored::at_most(SAMPLES, "pair.recent", self.recent.len(), "at most 3")?;
+        restored::at_most(SAMPLES, "pair.recent", self.recent.len())?;
         if let Some((which, _)) = self.probation {
             restored::one_of_two("pair.probation", which)?;
         }

@@ -16,7 +16,7 @@ use crate::filter::gate::Outcome;
 use crate::filter::kernel::dot_difference;
 use crate::filter::lanes::{LANES, Lanes};
 use crate::filter::plant::Plant;
-use crate::filter::step::{DoublingMemory, StepTransition, Steps};
+use crate::filter::step::{StepMemory, StepTransition, Steps};
 use crate::filter::ud::UdFactors;
 use crate::filter::ud_bank::{BankTransition, Factors, UdBank, UdMemory, Unrolled};
 
@@ -39,7 +39,7 @@ pub(super) struct Pack {
 #[derive(Debug)]
 pub(super) struct PackMemory {
     step: StepTransition,
-    doubling: DoublingMemory,
+    doubling: StepMemory,
     transition: BankTransition,
     factors: UdMemory,
     /// Departure of each member from its reference, and where the transition takes it: (n), (leading).
@@ -65,8 +65,8 @@ impl PackMemory {
     pub(super) fn new<P: Plant>(plant: &P) -> Self {
         let (n, m) = (plant.states(), plant.leading());
         Self {
-            step: StepTransition::zeros(n, m, plant.noises(), P::SOURCES),
-            doubling: DoublingMemory::new(n, m),
+            step: StepTransition::zeros(n, m, P::SOURCES),
+            doubling: StepMemory::new(n, m),
             transition: BankTransition::new(plant.pattern()),
             factors: UdMemory::new(n, m),
             away: vec![Lanes::ZERO; n],

@@ -100,7 +100,7 @@ mod tests {
 
         let mut own = b.clone();
         cylinder.propagate(&mut own, 10.0, None).unwrap();
-        let (before, mut step) = (a.clone(), StepTransition::zeros(n, states.leading, n, Cylinder::SOURCES));
+        let (before, mut step) = (a.clone(), StepTransition::zeros(n, states.leading, Cylinder::SOURCES));
         cylinder.transition(&mut a, 10.0, &mut step).unwrap();
         let away = nalgebra::DVector::from_fn(n, |i, _| b[i] - before[i]);
         let mut by = (&step.phi * away).as_slice().to_vec();

@@ -1,8 +1,9 @@
 //! A sorted set of fingerprints, saved in Rice's code: of each gap between two of them the quotient by 128 as so many ones and a zero, and seven bits of the rest.
 use alloc::vec::Vec;
 use core::iter;
-use serde::ser::{SerializeSeq, SerializeTuple};
 use serde::{Deserialize, Serialize, Serializer};
+
+use crate::sealed::List;
 
 /// Bits of the rest: 600 fingerprints of 16 bits are 109 apart.
 const REST_BITS: u32 = 7;
@@ -39,7 +40,7 @@ impl Generation {
 }
 
 impl Generation {
-    fn bits(&self) -> impl Iterator<Item = bool> {
+    fn bits(&self) -> impl Iterator<Item = bool> + Clone {
         let nexts = iter::once(0).chain(self.0.iter().map(|before| u32::from(*before) + 1));
         self.0.iter().zip(nexts).flat_map(|(fingerprint, next)| {
             let gap = u32::from(*fingerprint) - next;
@@ -48,7 +49,7 @@ impl Generation {
         })
     }
 
-    fn bytes(&self) -> impl Iterator<Item = u8> {
+    fn bytes(&self) -> impl Iterator<Item = u8> + Clone {
         let mut bits = self.bits();
         iter::from_fn(move || {
             let first = u8::from(bits.next()?);
@@ -60,20 +61,7 @@ impl Generation {
 /// As `(u16, Vec<u8>)`, without its memory.
 impl Serialize for Generation {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut to = serializer.serialize_tuple(2)?;
-        to.serialize_element(&(self.0.len() as u16))?;
-        to.serialize_element(&Code(self))?;
-        to.end()
-    }
-}
-
-struct Code<'a>(&'a Generation);
-
-impl Serialize for Code<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut to = serializer.serialize_seq(Some(self.0.bytes().count()))?;
-        self.0.bytes().try_for_each(|byte| to.serialize_element(&byte))?;
-        to.end()
+        (self.0.len() as u16, List(self.bytes())).serialize(serializer)
     }
 }
 

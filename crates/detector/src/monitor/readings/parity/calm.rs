@@ -5,8 +5,9 @@ use alloc::collections::VecDeque;
 use alloc::vec::Vec;
 
 use serde::de::Error;
-use serde::ser::SerializeSeq;
-use serde::{Deserialize, Deserializer, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::sealed::List;
 
 /// The unit, K.
 const UNIT_K: f64 = 5e-4;
@@ -55,21 +56,17 @@ impl Calm {
 /// Write windows in whole numbers: twice the time since the end of the one before, ms, and one more if it has another number of rows, which then follows; the
 /// difference; the rise.
 pub(super) fn serialize<S: Serializer>(windows: &VecDeque<Calm>, serializer: S) -> Result<S::Ok, S::Error> {
-    let whole = || {
-        let (mut end_ms, mut usual_rows) = (0_i64, 0);
-        windows.iter().flat_map(move |calm| {
-            let since_ms = calm.begun_ms.wrapping_sub(end_ms);
-            let rows = (calm.rows != usual_rows).then_some(calm.rows);
-            (end_ms, usual_rows) = (calm.begun_ms.wrapping_add(WINDOW_MS), calm.rows);
-            let head = since_ms.wrapping_mul(2) | i64::from(rows.is_some());
-            [Some(head), rows.map(i64::from), Some(calm.apart.into()), Some(calm.above.into())]
-                .into_iter()
-                .flatten()
-        })
-    };
-    let mut to = serializer.serialize_seq(Some(whole().count()))?;
-    whole().try_for_each(|number| to.serialize_element(&number))?;
-    to.end()
+    let (mut end_ms, mut usual_rows) = (0_i64, 0);
+    let whole = windows.iter().flat_map(move |calm| {
+        let since_ms = calm.begun_ms.wrapping_sub(end_ms);
+        let rows = (calm.rows != usual_rows).then_some(calm.rows);
+        (end_ms, usual_rows) = (calm.begun_ms.wrapping_add(WINDOW_MS), calm.rows);
+        let head = since_ms.wrapping_mul(2) | i64::from(rows.is_some());
+        [Some(head), rows.map(i64::from), Some(calm.apart.into()), Some(calm.above.into())]
+            .into_iter()
+            .flatten()
+    });
+    List(whole).serialize(serializer)
 }
 
 /// Read windows.
