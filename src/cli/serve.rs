@@ -6,9 +6,11 @@
 //! | `document`, `config` | the configuration, as written and checked |
 //! | `mapping` | a message becomes a row of a cylinder |
 //! | `journal`, `keeper`, `recent` | rows and states on disk; what is guaranteed stands in `keeper` |
+//! | `silence`, `alarms` | cylinders that send nothing, and the gateway's own alarms |
 //! | `publication`, `outbox` | what is published, and what has not arrived |
 //! | `link` | the broker |
 //! | `gateway` | the loop |
+mod alarms;
 mod config;
 mod document;
 mod gateway;
@@ -19,13 +21,12 @@ mod mapping;
 mod outbox;
 mod publication;
 mod recent;
+mod signals;
+mod silence;
 
-use super::interrupt;
 use super::message::Messages;
 use clap::Args;
 use gateway::Gateway;
-use keeper::Keeper;
-use link::Link;
 use std::path::PathBuf;
 
 /// Arguments of `serve`.
@@ -41,14 +42,12 @@ pub(super) struct ServeArguments {
 
 /// Runs until a signal comes.
 pub(super) fn run(arguments: ServeArguments, messages: &Messages) -> anyhow::Result<()> {
-    let (settings, broker) = config::read(&arguments.config)?;
+    let configuration = config::read(&arguments.config)?;
     if arguments.check {
         messages.say(&format!("{} can be used", arguments.config.display()));
         return Ok(());
     }
-    interrupt::listen(|| {})?;
-    let keeper = Keeper::open(&settings, messages)?;
-    Gateway::new(&settings, keeper, Link::new(broker), messages).run()
+    Gateway::new(arguments.config, configuration, messages)?.run()
 }
 
 const HELP: &str = "\
@@ -66,7 +65,7 @@ has its time and its readings:
   [[cylinder]]
   name = \"A12\"
   type = \"rail\"
-  topic = \"train/7/A12\"
+  topic = \"train/7/A12\"           # silent_after_min = 60
   [payload]
   time = \"/t\"                     # clock = \"rfc3339\", \"seconds\", \"milliseconds\" or \"arrival\"
   [[payload.reading]]
@@ -80,7 +79,8 @@ It publishes cylwatch/NAME/verdict, estimate and alarm/ALARM, which the broker k
 cylwatch/NAME/event, at quality of service 1. A comment to cylwatch/NAME/acknowledge acknowledges
 the alarms. Rows that were accepted and events survive a kill; see book/src/serve.md.
 
-Ctrl-C and SIGTERM save all states and end with exit code 0; 2 the configuration is wrong.
+Ctrl-C and SIGTERM save all states and end with exit code 0; 2 the configuration is wrong. SIGHUP
+reads the configuration again: it is taken over whole or refused whole.
 
 Examples:
   cylwatch serve gateway.toml --check

@@ -10,16 +10,21 @@
 //! - at most the rows since the last state are computed twice.
 //!
 //! A state that is damaged, and one of a monitor that failed, is set aside under another name, and the monitor begins anew; that is an event.
+mod anew;
+mod own;
+mod reload;
 mod replay;
 #[cfg(test)]
 mod tests;
 
+use super::alarms::{Alarms, Kind};
 use super::config::{Assigned, Settings};
 use super::journal::{Entry, Journal, Segment};
 use super::mapping::{Accepted, Refusal};
 use super::outbox::Outbox;
 use super::publication;
 use super::recent::Recent;
+use super::silence::Silence;
 use crate::cli::StepTime;
 use crate::cli::fleet::{locked, stem};
 use crate::cli::message::Messages;
@@ -29,7 +34,9 @@ use crate::report::Input;
 use anyhow::{Context, bail};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
 
 /// The zone in which times are told.
 const ZONE: &str = "UTC";
@@ -40,6 +47,8 @@ struct Cylinder {
     steps: Steps,
     /// The oldest segment with rows that its state does not know.
     unsaved_since: Option<u64>,
+    /// Why its monitor has failed, until it has begun anew.
+    failed: Option<String>,
 }
 
 /// What goes to a monitor.
@@ -50,13 +59,17 @@ pub(super) enum Delivered {
 
 /// All monitors.
 pub(super) struct Keeper<'a> {
-    settings: &'a Settings,
+    settings: Arc<Settings>,
     messages: &'a Messages,
     names: Vec<String>,
     journal: Journal,
     cylinders: BTreeMap<String, Cylinder>,
     /// Cylinders that came by the pattern.
     by_pattern: usize,
+    alarms: Alarms,
+    /// Changes of these alarms that are not published yet.
+    own: Vec<(String, Told)>,
+    pub silence: Silence,
     pub outbox: Outbox,
     pub recent: Recent,
     /// Rows that were taken in.
@@ -66,7 +79,7 @@ pub(super) struct Keeper<'a> {
 
 impl<'a> Keeper<'a> {
     /// Goes on from what is on disk.
-    pub(super) fn open(settings: &'a Settings, messages: &'a Messages) -> anyhow::Result<Self> {
+    pub(super) fn open(settings: Arc<Settings>, messages: &'a Messages) -> anyhow::Result<Self> {
         let folder = &settings.folder;
         make_folder(folder)?;
         let lock = locked(folder, "choose another folder in [store]")?;
@@ -77,9 +90,16 @@ impl<'a> Keeper<'a> {
         let names: Vec<String> =
             settings.mapping.readings.iter().map(|reading| reading.name.clone()).collect();
         let (journal, segments) = Journal::open(&folder.join("journal"), &names)?;
+        let (alarms, damage) = Alarms::open(&folder.join("alarms"))?;
+        if let Some(damage) = damage {
+            messages.caution(&format!("{damage}; it is set aside, and what was silent is told anew"));
+        }
         let mut keeper = Self {
             by_pattern: 0,
-            settings,
+            own: alarms.told().map(|(name, told)| (name.to_owned(), told.clone())).collect(),
+            alarms,
+            silence: Silence::default(),
+            settings: Arc::clone(&settings),
             messages,
             names,
             journal,
@@ -93,6 +113,8 @@ impl<'a> Keeper<'a> {
         for (name, assigned) in &settings.named {
             keeper.know(name, assigned)?;
         }
+        keeper.begin_failed_anew()?;
+        keeper.publish_alarms()?;
         Ok(keeper)
     }
 
@@ -118,8 +140,8 @@ impl<'a> Keeper<'a> {
         if self.by_pattern >= most || self.cylinders.len() >= self.settings.cylinders {
             return refused(Refusal::TooManyCylinders);
         }
-        let Some(assigned) = &self.settings.by_pattern else { return refused(Refusal::UnknownTopic) };
-        self.know(name, assigned).map_err(|error| (Refusal::Monitor, format!("{error:#}")))
+        let Some(assigned) = self.settings.by_pattern.clone() else { return refused(Refusal::UnknownTopic) };
+        self.know(name, &assigned).map_err(|error| (Refusal::Monitor, format!("{error:#}")))
     }
 
     /// Whether there is a cylinder of this name.
@@ -151,8 +173,11 @@ impl<'a> Keeper<'a> {
             (None, None) => Ok(()),
         };
         self.by_pattern += usize::from(!self.settings.named.contains_key(name));
-        self.cylinders
-            .insert(name.to_owned(), Cylinder { assigned: assigned.clone(), steps, unsaved_since: None });
+        self.silence.watch(name, assigned.silent_after, Instant::now());
+        self.cylinders.insert(
+            name.to_owned(),
+            Cylinder { assigned: assigned.clone(), steps, unsaved_since: None, failed: None },
+        );
         match resumed {
             Ok(()) => Ok(()),
             Err(reason) => self.begin_anew(name, &reason),
@@ -161,6 +186,14 @@ impl<'a> Keeper<'a> {
 
     /// Puts rows and acknowledgements on disk; only then they are accepted.
     pub(super) fn record(&mut self, inputs: &[(String, Delivered)]) -> anyhow::Result<()> {
+        for (name, input) in inputs {
+            // A later alarm must not be acknowledged when the journal is read again: those of the gateway are before it.
+            if let Delivered::Acknowledge(comment) = input {
+                let told = self.alarms.acknowledge(name, comment);
+                self.own.extend(told.into_iter().map(|told| (name.clone(), told)));
+            }
+        }
+        self.publish_alarms()?;
         let entry = |(name, input): &(String, Delivered)| match input {
             Delivered::Row(Accepted { time_ns, cells }) => {
                 Entry::Row { cylinder: name.clone(), time_ns: *time_ns, cells: cells.clone() }
@@ -173,11 +206,7 @@ impl<'a> Keeper<'a> {
     }
 
     /// Gives what was recorded to its monitor.
-    pub(super) fn take(
-        &mut self,
-        name: &str,
-        input: Delivered,
-    ) -> anyhow::Result<Result<(), (Refusal, String)>> {
+    pub(super) fn take(&mut self, name: &str, input: Delivered) -> Result<(), (Refusal, String)> {
         let number = self.journal.number();
         if let Some(cylinder) = self.cylinders.get_mut(name) {
             cylinder.unsaved_since.get_or_insert(number);
@@ -185,12 +214,17 @@ impl<'a> Keeper<'a> {
         match input {
             Delivered::Row(Accepted { time_ns, cells }) => {
                 self.rows += 1;
+                self.recent.note(name, time_ns, &cells);
+                self.silence.heard(name, Instant::now());
+                if self.alarms.must_clear(name) {
+                    self.set_alarm(name, Kind::Silent, false, time_ns as f64 * 1e-9);
+                }
                 let names = self.names.clone();
                 self.step(name, &names, time_ns, &cells)
             }
             Delivered::Acknowledge(comment) => {
                 self.acknowledge(name, &comment);
-                Ok(Ok(()))
+                Ok(())
             }
         }
     }
@@ -201,8 +235,11 @@ impl<'a> Keeper<'a> {
         names: &[String],
         time_ns: i64,
         cells: &[f64],
-    ) -> anyhow::Result<Result<(), (Refusal, String)>> {
-        let Some(cylinder) = self.cylinders.get_mut(name) else { return Ok(Ok(())) };
+    ) -> Result<(), (Refusal, String)> {
+        let Some(cylinder) = self.cylinders.get_mut(name) else { return Ok(()) };
+        if cylinder.failed.is_some() {
+            return Err((Refusal::Monitor, "its monitor begins anew after this row".to_owned()));
+        }
         let readings: Vec<(&str, f64)> =
             names.iter().map(String::as_str).zip(cells.iter().copied()).collect();
         let had_begun = cylinder.steps.has_begun();
@@ -212,15 +249,13 @@ impl<'a> Keeper<'a> {
                 publication::last_row(&self.settings.prefix, name, &table)
                     .into_iter()
                     .for_each(|message| self.outbox.push(message));
-                Ok(Ok(()))
+                Ok(())
             }
             Err(error) => {
                 let reason = format!("{error:#}");
-                if had_begun {
-                    // It may have taken in a part of the row.
-                    self.begin_anew(name, &reason)?;
-                }
-                Ok(Err((Refusal::Monitor, reason)))
+                // It may have taken in a part of the row.
+                cylinder.failed = had_begun.then(|| reason.clone());
+                Err((Refusal::Monitor, reason))
             }
         }
     }
@@ -235,34 +270,6 @@ impl<'a> Keeper<'a> {
             self.messages.say(&format!("{name}: {}", one.words));
             self.outbox.push(publication::told(&self.settings.prefix, name, one));
         }
-    }
-
-    /// Begins a monitor anew: said, an event, and what it had is set aside.
-    fn begin_anew(&mut self, name: &str, reason: &str) -> anyhow::Result<()> {
-        self.messages
-            .caution(&format!("{name}: {reason}; its state is set aside and its monitor begins anew"));
-        self.journal.append(&[Entry::Anew { cylinder: name.to_owned(), reason: reason.to_owned() }])?;
-        self.set_aside(name)?;
-        let number = self.journal.number();
-        if let Some(cylinder) = self.cylinders.get_mut(name) {
-            cylinder.steps = cylinder.assigned.monitor()?;
-            cylinder.unsaved_since.get_or_insert(number);
-        }
-        self.outbox.push(publication::anew(&self.settings.prefix, name, reason));
-        Ok(())
-    }
-
-    /// Gives the files of a cylinder names that nothing reads.
-    fn set_aside(&self, name: &str) -> anyhow::Result<()> {
-        for file in self.files(name) {
-            if let Some(bytes) = read(&file)? {
-                let mut aside = file.clone().into_os_string();
-                aside.push(format!(".{}.aside", &Input::of("", &bytes).sha256[..12]));
-                std::fs::rename(&file, &aside)
-                    .with_context(|| format!("{} cannot be renamed", file.display()))?;
-            }
-        }
-        Ok(())
     }
 
     /// Names of the cylinders whose states do not know all.
@@ -312,7 +319,17 @@ impl<'a> Keeper<'a> {
     }
 }
 
-fn read(file: &std::path::Path) -> anyhow::Result<Option<Vec<u8>>> {
+/// Gives a file, if it is there, a name that nothing reads.
+pub(super) fn set_aside(file: &Path) -> anyhow::Result<()> {
+    if let Some(bytes) = read(file)? {
+        let mut aside = file.to_owned().into_os_string();
+        aside.push(format!(".{}.aside", &Input::of("", &bytes).sha256[..12]));
+        std::fs::rename(file, &aside).with_context(|| format!("{} cannot be renamed", file.display()))?;
+    }
+    Ok(())
+}
+
+fn read(file: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     match std::fs::read(file) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
