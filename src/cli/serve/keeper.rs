@@ -32,7 +32,7 @@ use crate::cli::monitor::{NotResumed, Steps, Told};
 use crate::cli::output::{make_folder, remove_orphans, write_file};
 use crate::report::Input;
 use anyhow::{Context, bail};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -66,6 +66,8 @@ pub(super) struct Keeper<'a> {
     cylinders: BTreeMap<String, Cylinder>,
     /// Cylinders that came by the pattern.
     by_pattern: usize,
+    /// Cylinders whose monitors have failed.
+    failed: BTreeSet<String>,
     alarms: Alarms,
     /// Changes of these alarms that are not published yet.
     own: Vec<(String, Told)>,
@@ -96,6 +98,7 @@ impl<'a> Keeper<'a> {
         }
         let mut keeper = Self {
             by_pattern: 0,
+            failed: BTreeSet::new(),
             own: alarms.told().map(|(name, told)| (name.to_owned(), told.clone())).collect(),
             alarms,
             silence: Silence::default(),
@@ -254,7 +257,10 @@ impl<'a> Keeper<'a> {
             Err(error) => {
                 let reason = format!("{error:#}");
                 // It may have taken in a part of the row.
-                cylinder.failed = had_begun.then(|| reason.clone());
+                if had_begun {
+                    cylinder.failed = Some(reason.clone());
+                    self.failed.insert(name.to_owned());
+                }
                 Err((Refusal::Monitor, reason))
             }
         }

@@ -174,6 +174,7 @@ fn rows_of_a_monitor_that_has_failed_are_refused_now_and_when_the_journal_is_rea
     let mut keeper = opened(&settings);
     take(&mut keeper, 0..100);
     keeper.cylinders.get_mut("B").unwrap().failed = Some("a reason".to_owned());
+    keeper.failed.insert("B".to_owned());
     keeper.record(&[("B".to_owned(), row(100))]).unwrap();
     assert_eq!(keeper.take("B", row(100)).unwrap_err().0, Refusal::Monitor);
     keeper.begin_failed_anew().unwrap();
