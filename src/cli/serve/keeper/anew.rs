@@ -18,6 +18,7 @@ impl Keeper<'_> {
             .caution(&format!("{name}: {reason}; its state is set aside and its monitor begins anew"));
         let (cylinder, reason, time_s) = (name.to_owned(), reason.to_owned(), self.last_row_s(name));
         self.journal.append(&[Entry::Anew { cylinder, reason: reason.clone(), time_s }])?;
+        self.settle()?;
         self.set_aside(name)?;
         let number = self.journal.number();
         if let Some(cylinder) = self.cylinders.get_mut(name) {
