@@ -128,9 +128,13 @@ fn configured(text: &str) -> Value {
 fn the_configurations_that_the_gateway_takes_fit_their_schema_and_others_do_not() {
     let right = configuration(1883, "5");
     assert_eq!(broken("gateway", &configured(&right)), None);
-    let package =
-        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/packaging/gateway.toml")).unwrap();
-    assert_eq!(broken("gateway", &configured(&package)), None);
+    for file in ["packaging/gateway.toml", "book/gateway/gateway.toml"] {
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
+        assert_eq!(broken("gateway", &configured(&text)), None, "{file}");
+        let folder = tempdir().unwrap();
+        std::fs::write(folder.path().join("gateway.toml"), text).unwrap();
+        assert_eq!(run(folder.path(), &["serve", "gateway.toml", "--check"]).code, Some(0), "{file}");
+    }
     for (from, to) in [
         ("client_id", "clint_id"),
         ("\"5\"", "\"4\""),
