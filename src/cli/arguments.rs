@@ -112,7 +112,7 @@ pub(super) enum Command {
     Properties(PropertiesArguments),
     /// Write start files vessel.toml and scenario.toml, with comments, to edit.
     Init(InitArguments),
-    /// Print the JSON schema of vessel, scenario and candidates files, for editors.
+    /// Print the JSON schema of vessel, scenario, candidates and gateway files and of what the gateway publishes.
     Schema(SchemaArguments),
     /// Write manual pages, as for `man`.
     Man(ManArguments),

@@ -10,6 +10,8 @@
 //! | `publication`, `outbox` | what is published, and what has not arrived |
 //! | `link` | the broker |
 //! | `gateway` | the loop |
+//! | `notify` | what the service manager hears |
+//! | `replay` | recorded logs, played to the broker |
 mod alarms;
 mod config;
 mod document;
@@ -18,16 +20,21 @@ mod journal;
 mod keeper;
 mod link;
 mod mapping;
+mod notify;
 mod outbox;
 mod publication;
 mod recent;
+mod replay;
 mod saver;
 mod signals;
 mod silence;
 
 use super::message::Messages;
+use crate::thermal::document::schema;
 use clap::Args;
 use gateway::Gateway;
+use replay::{Replay, ReplayArguments};
+use serde_json::Value;
 use std::path::PathBuf;
 
 /// Arguments of `serve`.
@@ -39,16 +46,29 @@ pub(super) struct ServeArguments {
     /// Check the configuration and end.
     #[arg(long)]
     pub check: bool,
+    #[command(flatten)]
+    pub replay: ReplayArguments,
 }
 
-/// Runs until a signal comes.
+/// Runs until a signal comes, or a replay has ended.
 pub(super) fn run(arguments: ServeArguments, messages: &Messages) -> anyhow::Result<()> {
     let configuration = config::read(&arguments.config)?;
+    let replay = Replay::of(&arguments.replay, (&configuration.0, &configuration.1), messages)?;
     if arguments.check {
         messages.say(&format!("{} can be used", arguments.config.display()));
         return Ok(());
     }
-    Gateway::new(arguments.config, configuration, messages)?.run()
+    Gateway::new(arguments.config, configuration, replay, messages)?.run()
+}
+
+/// JSON schema of configurations.
+pub(super) fn configuration_schema() -> Value {
+    schema::of::<document::Document>("configuration of cylwatch serve")
+}
+
+/// JSON schema of `verdict`, `estimate`, `alarm` or `event`.
+pub(super) fn published_schema(what: &str) -> Value {
+    publication::schema(what)
 }
 
 const HELP: &str = "\
@@ -85,4 +105,5 @@ reads the configuration again: it is taken over whole or refused whole.
 
 Examples:
   cylwatch serve gateway.toml --check
-  cylwatch serve gateway.toml";
+  cylwatch serve gateway.toml
+  cylwatch serve gateway.toml --replay logs --speed 1000 --stay";

@@ -37,7 +37,7 @@ pub(super) struct Logs {
 }
 
 /// A log and the cylinder that its folder names.
-type Named = (PathBuf, Option<String>);
+pub(in crate::cli) type Named = (PathBuf, Option<String>);
 
 /// The logs of a folder by cylinder, and what is wrong with it.
 #[derive(Default)]
@@ -51,7 +51,7 @@ pub(super) struct Found {
 }
 
 /// The logs of a folder in the order of their names, and what is wrong with it; `others` are files and folders in it that are no logs.
-pub(super) fn files(folder: &Path, others: &[&Path]) -> anyhow::Result<(Vec<Named>, Vec<Fault>)> {
+pub(in crate::cli) fn files(folder: &Path, others: &[&Path]) -> anyhow::Result<(Vec<Named>, Vec<Fault>)> {
     let shown = folder.display();
     if folder.is_file() {
         bail!("{shown} is a file: name a folder of logs, or use `cylwatch monitor` for one log");
@@ -173,7 +173,7 @@ fn fault(cylinder: &str, file: String, reason: &str, remedy: &str) -> Fault {
 }
 
 /// Name of a cylinder that has a file of its own.
-fn name_of(path: &Path) -> String {
+pub(in crate::cli) fn name_of(path: &Path) -> String {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let small = name.to_ascii_lowercase();
     let ending = ENDINGS.iter().find(|ending| small.ends_with(*ending)).map_or(0, |ending| ending.len());

@@ -1,9 +1,10 @@
 //! The configuration as its file has it: tables and keys, SI values.
+use schemars::JsonSchema;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 /// The whole file.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct Document {
     pub broker: BrokerTable,
     pub store: StoreTable,
@@ -20,7 +21,7 @@ pub(super) struct Document {
 }
 
 /// The broker.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct BrokerTable {
     pub host: String,
     pub port: Option<u16>,
@@ -28,6 +29,7 @@ pub(super) struct BrokerTable {
     pub client_id: String,
     pub user: Option<String>,
     /// Refused, whatever it holds.
+    #[schemars(skip)]
     pub password: Option<IgnoredAny>,
     pub password_file: Option<String>,
     pub password_env: Option<String>,
@@ -36,7 +38,7 @@ pub(super) struct BrokerTable {
 }
 
 /// Version of the protocol.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 pub(super) enum Protocol {
     #[default]
     #[serde(rename = "5")]
@@ -46,14 +48,14 @@ pub(super) enum Protocol {
 }
 
 /// Where states are kept.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct StoreTable {
     pub folder: String,
     pub save_every_s: Option<f64>,
 }
 
 /// Cylinders that are alike.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct TypeTable {
     pub name: String,
     pub vessel: String,
@@ -63,7 +65,7 @@ pub(super) struct TypeTable {
 }
 
 /// Options by the names that they have in `monitor`; the rest of the program checks them.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
 pub(super) struct OptionsTable {
     pub fill_pressure_pa: Option<f64>,
     pub fill_temperature_k: Option<f64>,
@@ -82,7 +84,7 @@ pub(super) struct OptionsTable {
 }
 
 /// A cylinder.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct CylinderTable {
     pub name: String,
     #[serde(rename = "type")]
@@ -94,7 +96,7 @@ pub(super) struct CylinderTable {
 }
 
 /// Cylinders that are not named.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct PatternTable {
     pub topic: String,
     #[serde(rename = "type")]
@@ -103,7 +105,7 @@ pub(super) struct PatternTable {
 }
 
 /// Where a message has its time and its readings.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct PayloadTable {
     pub time: Option<String>,
     pub clock: Option<TimeForm>,
@@ -111,7 +113,7 @@ pub(super) struct PayloadTable {
 }
 
 /// How a time is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum TimeForm {
     /// A date with a zone.
@@ -126,7 +128,7 @@ pub(super) enum TimeForm {
 }
 
 /// A reading.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 pub(super) struct ReadingTable {
     /// Name of a column of a log, with its unit.
     pub name: String,
@@ -135,13 +137,13 @@ pub(super) struct ReadingTable {
 }
 
 /// Where results go.
-#[derive(Default, Deserialize)]
+#[derive(Default, Deserialize, JsonSchema)]
 pub(super) struct PublishTable {
     pub prefix: Option<String>,
 }
 
 /// Bounds of what is taken in.
-#[derive(Default, Deserialize)]
+#[derive(Default, Deserialize, JsonSchema)]
 pub(super) struct LimitsTable {
     pub message_bytes: Option<u32>,
     pub cylinders: Option<u32>,

@@ -8,6 +8,8 @@ use super::config::{Broker, Settings};
 use super::keeper::Keeper;
 use super::link::{Client, FromBroker, Link, WINDOW};
 use super::mapping::Refusal;
+use super::notify::Notify;
+use super::replay::Replay;
 use super::saver::TOGETHER;
 use super::signals::Signals;
 use crate::cli::message::Messages;
@@ -49,6 +51,9 @@ pub(super) struct Gateway<'a> {
     saving: Saving,
     /// A configuration that waits to be taken over.
     reload: Option<Reload>,
+    notify: Notify,
+    /// Logs that are played to the broker.
+    replay: Option<Replay>,
 }
 
 impl<'a> Gateway<'a> {
@@ -56,6 +61,7 @@ impl<'a> Gateway<'a> {
     pub(super) fn new(
         path: PathBuf,
         (settings, broker): (Settings, Broker),
+        replay: Option<Replay>,
         messages: &'a Messages,
     ) -> anyhow::Result<Self> {
         let signals = Signals::listen()?;
@@ -75,12 +81,16 @@ impl<'a> Gateway<'a> {
             said: BTreeSet::new(),
             down: None,
             reload: None,
+            notify: Notify::of_environment(),
+            replay,
         })
     }
 
     /// Runs until a signal comes.
     pub(super) fn run(mut self) -> anyhow::Result<()> {
-        while !self.signals.end() {
+        self.notify.ready();
+        while !self.signals.end() && self.replay_goes_on()? {
+            self.notify.turned();
             self.listen(PATIENCE);
             self.begin_anew();
             self.look_for_silence();
@@ -91,6 +101,12 @@ impl<'a> Gateway<'a> {
             self.take_over();
         }
         self.end()
+    }
+
+    /// Whether the gateway is to run on, as far as a replay is concerned.
+    fn replay_goes_on(&mut self) -> anyhow::Result<bool> {
+        let waits = self.client.is_none() || self.batch.len() > 0;
+        self.replay.as_mut().map_or(Ok(true), |replay| replay.goes_on(waits, self.messages))
     }
 
     /// Takes in what has come, after a wait if nothing has.
@@ -107,6 +123,7 @@ impl<'a> Gateway<'a> {
             patience = Duration::ZERO;
             match said {
                 FromBroker::Message(delivery) => self.receive(*delivery),
+                FromBroker::Subscribed => self.replay.iter_mut().for_each(Replay::subscribed),
                 FromBroker::Sent(packet) => self.keeper.outbox.sent(packet),
                 FromBroker::Arrived(packet, refused) => {
                     if let Some(reason) = refused {
@@ -181,6 +198,7 @@ impl<'a> Gateway<'a> {
 
     /// Waits for events to arrive, saves all, and says what was done.
     fn end(mut self) -> anyhow::Result<()> {
+        self.notify.stopping();
         let until = Instant::now() + FAREWELL;
         while self.client.is_some() && self.keeper.outbox.len() > 0 && Instant::now() < until {
             self.listen(PATIENCE);
@@ -201,8 +219,8 @@ impl<'a> Gateway<'a> {
         }
         let left_out: Vec<String> =
             self.refusals.iter().map(|(refusal, count)| format!("{} ({count})", refusal.words())).collect();
-        let mut words =
-            format!("stopped by a signal: {} rows of {} cylinders", self.keeper.rows, self.keeper.len());
+        let why = if self.signals.end() { "stopped by a signal" } else { "the replay has ended" };
+        let mut words = format!("{why}: {} rows of {} cylinders", self.keeper.rows, self.keeper.len());
         if !left_out.is_empty() {
             words.push_str(&format!("; messages left out: {}", left_out.join(", ")));
         }

@@ -32,6 +32,8 @@ pub(super) enum FromBroker {
     /// None any more.
     Down(String),
     Message(Box<Delivery>),
+    /// One of the [parts](Client::parts) of a subscription holds.
+    Subscribed,
     /// The first message that was handed over and has no packet yet went out in this one.
     Sent(u16),
     /// A packet has arrived, and why the broker does not want it.
@@ -60,6 +62,11 @@ pub(super) enum Client {
 }
 
 impl Client {
+    /// In how many parts so many filters are subscribed to.
+    pub(super) fn parts(filters: usize) -> usize {
+        filters.div_ceil(FILTERS)
+    }
+
     /// Subscribes.
     pub(super) fn subscribe(&self, filters: &[String]) -> anyhow::Result<()> {
         for some in filters.chunks(FILTERS) {
@@ -168,6 +175,7 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                     again: publish.dup || publish.retain,
                     receipt: Receipt::V4(rumqttc::Publish { payload: Vec::new().into(), ..publish }),
                 })),
+                rumqttc::Packet::SubAck(_) => FromBroker::Subscribed,
                 rumqttc::Packet::PubAck(ack) => FromBroker::Arrived(ack.pkid, None),
                 _ => continue,
             },
@@ -207,6 +215,7 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                         ..publish
                     }),
                 })),
+                Packet5::SubAck(_) => FromBroker::Subscribed,
                 Packet5::PubAck(ack) => {
                     let is_fine =
                         matches!(ack.reason, PubAckReason::Success | PubAckReason::NoMatchingSubscribers);

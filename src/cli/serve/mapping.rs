@@ -130,6 +130,11 @@ impl Pattern {
         is_level(name).then_some(name)
     }
 
+    /// The topic of a cylinder.
+    fn topic(&self, name: &str) -> Option<String> {
+        is_level(name).then(|| format!("{}{name}{}", self.before, self.after))
+    }
+
     /// As a filter.
     fn filter(&self) -> String {
         format!("{}+{}", self.before, self.after)
@@ -159,6 +164,14 @@ impl Mapping {
             return is_level(name).then_some(Addressed::Acknowledge(name));
         }
         self.pattern.as_ref()?.name(topic).map(Addressed::ByPattern)
+    }
+
+    /// The topic of a cylinder; `None`: there is none, or it is another cylinder's.
+    pub(super) fn topic(&self, name: &str) -> Option<String> {
+        if let Some((topic, _)) = self.topics.iter().find(|(_, of)| *of == name) {
+            return Some(topic.clone());
+        }
+        self.pattern.as_ref()?.topic(name).filter(|topic| !self.topics.contains_key(topic))
     }
 
     /// The row of a payload that came at a time, ns since 1970.

@@ -6,9 +6,12 @@
 //! | `estimate` | yes | the last row, in the columns of `monitor` |
 //! | `alarm/NAME` | yes | the last change of an alarm, as a line of `monitor --events` |
 //! | `event` | no | an event, as a line of `monitor --events` |
+mod schema;
+
 use super::outbox::Message;
 use crate::cli::monitor::{ALARM, Told};
 use crate::report::{Table, digest};
+pub(super) use schema::schema;
 use serde_json::{Map, Value, json};
 
 /// Columns that a verdict has.

@@ -138,6 +138,7 @@ fn a_cylinder_that_falls_silent_is_told_once_whatever_is_killed_and_ends_with_it
     let b: BTreeSet<String> = changes(&heard, "cylwatch/B/alarm/silent").into_iter().collect();
     assert_eq!(b.len(), 1, "{b:?}");
     publish(broker.port, &of(10..11, "A"));
+    super::schema::assert_true_of(&heard);
     wait("it ends", || changes(&heard, silent).contains(&"alarm-silent-inactive-1767226200000".to_owned()));
     publish(broker.port, &[("cylwatch/A/acknowledge".to_owned(), "a broken cable".to_owned())]);
     wait("it is acknowledged", || {

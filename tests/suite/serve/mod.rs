@@ -1,9 +1,14 @@
 //! `cylwatch serve` beside a real broker: the events and states of `fleet`, through kills of either; bad configurations and bad messages.
 mod broker;
+mod demonstration;
 mod hardship;
 mod load;
+#[cfg(target_os = "linux")]
+mod notify;
 mod refusals;
 mod reload;
+mod replay;
+mod schema;
 
 use crate::support::{program, run};
 use broker::{Broker, Heard, Process, listen, publish, wait};
@@ -177,6 +182,7 @@ fn signal(gateway: &Process, name: &str) {
 
 /// Events and changes of alarms as they were heard, by cylinder.
 fn heard_lines(heard: &Heard) -> BTreeMap<String, Vec<String>> {
+    schema::assert_true_of(heard);
     let mut lines: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (topic, payload, _) in heard.lock().unwrap().iter() {
         let levels: Vec<&str> = topic.split('/').collect();

@@ -82,6 +82,7 @@ fn what_cannot_be_used_is_said_once_and_counted_and_a_damaged_state_is_set_aside
         assert!(said.contains(words), "`{words}` is missing in: {said}");
     }
     assert_eq!(said.matches("A: a message is left out: it is no JSON").count(), 1, "{said}");
+    super::schema::assert_true_of(&heard);
     let heard = heard.lock().unwrap();
     let events: Vec<_> = heard.iter().filter(|(topic, _, _)| topic == "cylwatch/A/event").collect();
     assert!(events.len() == 1 && events[0].1.contains("cold-start"), "{events:?}");

@@ -58,6 +58,7 @@ impl Gateway<'_> {
                 self.refuse(&name, refusal, &reason);
             }
         }
+        self.replay.iter().for_each(|replay| replay.come(deliveries.iter()));
         self.publish_alarms();
         self.send();
     }

@@ -21,6 +21,7 @@ pub(super) struct Reload {
 impl Gateway<'_> {
     /// Reads the configuration again.
     pub(super) fn read_again(&mut self) {
+        self.notify.reloading();
         match config::read(&self.path) {
             Ok((settings, broker)) => {
                 self.reload = Some(Reload { settings: Arc::new(settings), broker, since: Instant::now() });
@@ -43,6 +44,7 @@ impl Gateway<'_> {
                 let before = std::mem::replace(&mut self.settings, settings);
                 self.connect_anew(&before, broker);
                 self.messages.say(&format!("the configuration is taken over: {changes}"));
+                self.notify.ready();
             }
             Err(error) => self.stays(&error),
         }
@@ -50,6 +52,7 @@ impl Gateway<'_> {
 
     fn stays(&self, error: &anyhow::Error) {
         self.messages.caution(&format!("the configuration stays as it was: {error:#}"));
+        self.notify.ready();
     }
 
     /// Another broker, or other topics.
