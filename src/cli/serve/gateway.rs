@@ -42,6 +42,8 @@ pub(super) struct Gateway<'a> {
     link: Link,
     /// The connection that there is.
     client: Option<Client>,
+    /// Subscriptions that the broker has not answered.
+    subscribing: usize,
     batch: Batch,
     refusals: BTreeMap<Refusal, u64>,
     /// What was said of cylinders.
@@ -76,6 +78,7 @@ impl<'a> Gateway<'a> {
             messages,
             signals,
             client: None,
+            subscribing: 0,
             batch: Batch::default(),
             refusals: BTreeMap::new(),
             said: BTreeSet::new(),
@@ -123,7 +126,6 @@ impl<'a> Gateway<'a> {
             patience = Duration::ZERO;
             match said {
                 FromBroker::Message(delivery) => self.receive(*delivery),
-                FromBroker::Subscribed => self.replay.iter_mut().for_each(Replay::subscribed),
                 FromBroker::Sent(packet) => self.keeper.outbox.sent(packet),
                 FromBroker::Arrived(packet, refused) => {
                     if let Some(reason) = refused {
@@ -133,6 +135,7 @@ impl<'a> Gateway<'a> {
                     self.send();
                 }
                 FromBroker::Up(client, is_known) => self.up(client, is_known),
+                FromBroker::Subscribed(refused) => self.subscribed(refused),
                 FromBroker::Down(reason) => {
                     self.take();
                     self.drop_batch();
@@ -149,15 +152,29 @@ impl<'a> Gateway<'a> {
     }
 
     fn up(&mut self, client: Client, is_known: bool) {
-        self.messages.say("connected to the broker");
         self.down = None;
         self.keeper.silence.begin(Instant::now());
         self.keeper.outbox.connected(is_known);
-        if let Err(error) = client.subscribe(&self.settings.mapping.filters()) {
-            self.messages.caution(&format!("the topics cannot be subscribed to: {error:#}"));
+        match client.subscribe(&self.settings.mapping.filters()) {
+            Ok(answers) => self.subscribing = answers,
+            Err(error) => self.messages.caution(&format!("the topics cannot be subscribed to: {error:#}")),
         }
         self.client = Some(client);
         self.send();
+    }
+
+    /// The broker has answered a subscription.
+    fn subscribed(&mut self, refused: usize) {
+        if refused > 0 {
+            let words =
+                format!("the broker refuses {refused} of the topics: look at what it lets this user read");
+            self.messages.caution(&words);
+        }
+        self.subscribing = self.subscribing.saturating_sub(1);
+        if self.subscribing == 0 {
+            self.messages.say("connected to the broker");
+            self.replay.iter_mut().for_each(Replay::subscribed);
+        }
     }
 
     /// Raises the alarm of cylinders that have fallen silent, where rows could have come.

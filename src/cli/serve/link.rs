@@ -3,8 +3,10 @@
 //! Each connection has a client of its own: what had not arrived when one was lost is the outbox's to send again. Messages are acknowledged by hand.
 use super::config::Broker;
 use super::document::Protocol;
-use rumqttc::v5::mqttbytes::v5::{ConnectProperties, Filter, Packet as Packet5, PubAckReason};
-use rumqttc::{Outgoing, SubscribeFilter, v5};
+use rumqttc::v5::mqttbytes::v5::{
+    ConnectProperties, Filter, Packet as Packet5, PubAckReason, SubscribeReasonCode as SubscribeReasonCode5,
+};
+use rumqttc::{Outgoing, SubscribeFilter, SubscribeReasonCode, v5};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
@@ -32,8 +34,8 @@ pub(super) enum FromBroker {
     /// None any more.
     Down(String),
     Message(Box<Delivery>),
-    /// One of the [parts](Client::parts) of a subscription holds.
-    Subscribed,
+    /// The broker has answered a part of a subscription, and refuses so many of its topics.
+    Subscribed(usize),
     /// The first message that was handed over and has no packet yet went out in this one.
     Sent(u16),
     /// A packet has arrived, and why the broker does not want it.
@@ -62,13 +64,8 @@ pub(super) enum Client {
 }
 
 impl Client {
-    /// In how many parts so many filters are subscribed to.
-    pub(super) fn parts(filters: usize) -> usize {
-        filters.div_ceil(FILTERS)
-    }
-
-    /// Subscribes.
-    pub(super) fn subscribe(&self, filters: &[String]) -> anyhow::Result<()> {
+    /// Subscribes; says how often the broker will answer.
+    pub(super) fn subscribe(&self, filters: &[String]) -> anyhow::Result<usize> {
         for some in filters.chunks(FILTERS) {
             match self {
                 Self::V4(client) => {
@@ -82,7 +79,7 @@ impl Client {
                 }
             }
         }
-        Ok(())
+        Ok(filters.len().div_ceil(FILTERS))
     }
 
     /// Ends subscriptions.
@@ -175,7 +172,10 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                     again: publish.dup || publish.retain,
                     receipt: Receipt::V4(rumqttc::Publish { payload: Vec::new().into(), ..publish }),
                 })),
-                rumqttc::Packet::SubAck(_) => FromBroker::Subscribed,
+                rumqttc::Packet::SubAck(ack) => {
+                    let is_refused = |code: &&SubscribeReasonCode| **code == SubscribeReasonCode::Failure;
+                    FromBroker::Subscribed(ack.return_codes.iter().filter(is_refused).count())
+                }
                 rumqttc::Packet::PubAck(ack) => FromBroker::Arrived(ack.pkid, None),
                 _ => continue,
             },
@@ -215,7 +215,11 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                         ..publish
                     }),
                 })),
-                Packet5::SubAck(_) => FromBroker::Subscribed,
+                Packet5::SubAck(ack) => {
+                    let is_refused =
+                        |code: &&SubscribeReasonCode5| !matches!(code, SubscribeReasonCode5::Success(_));
+                    FromBroker::Subscribed(ack.return_codes.iter().filter(is_refused).count())
+                }
                 Packet5::PubAck(ack) => {
                     let is_fine =
                         matches!(ack.reason, PubAckReason::Success | PubAckReason::NoMatchingSubscribers);

@@ -8,7 +8,7 @@ mod player;
 mod tracks;
 
 use super::config::{Broker, Settings};
-use super::link::{Client, Delivery};
+use super::link::Delivery;
 use crate::cli::message::Messages;
 use anyhow::{anyhow, bail};
 use clap::Args;
@@ -73,8 +73,6 @@ pub(super) struct Replay {
     stays: bool,
     way: Arc<Way>,
     thread: Option<JoinHandle<anyhow::Result<()>>>,
-    /// Parts of the subscription that do not hold yet; rows before that would be lost.
-    parts: usize,
     /// How many rows had come, and since when no other has.
     seen: (u64, Instant),
     is_told: bool,
@@ -146,19 +144,15 @@ impl Replay {
             stays: arguments.stay,
             way: Arc::default(),
             thread: None,
-            parts: Client::parts(settings.mapping.filters().len()),
             seen: (0, Instant::now()),
             is_told: false,
             is_over: false,
         }))
     }
 
-    /// A part of the gateway's subscription holds: with the last one the replay begins.
+    /// The gateway's subscription holds: the replay begins.
     pub(super) fn subscribed(&mut self) {
-        self.parts = self.parts.saturating_sub(1);
-        if self.parts == 0
-            && let Some((recording, broker, speed)) = self.ready.take()
-        {
+        if let Some((recording, broker, speed)) = self.ready.take() {
             let way = Arc::clone(&self.way);
             self.thread = Some(std::thread::spawn(move || player::play(&recording, broker, speed, &way)));
             self.seen.1 = Instant::now();

@@ -73,9 +73,10 @@ impl Gateway<'_> {
         if let Some(client) = &self.client {
             let changed =
                 client.unsubscribe(&only(&old, &new)).and_then(|()| client.subscribe(&only(&new, &old)));
-            if changed.is_err() {
+            match changed {
+                Ok(answers) => self.subscribing += answers,
                 // The next connection subscribes.
-                client.disconnect();
+                Err(_) => client.disconnect(),
             }
         }
     }

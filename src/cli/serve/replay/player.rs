@@ -97,7 +97,7 @@ impl Player<'_> {
                     }
                     self.outbox.arrived(packet);
                 }
-                FromBroker::Message(_) | FromBroker::Subscribed => {}
+                FromBroker::Message(_) | FromBroker::Subscribed(_) => {}
             }
         }
         Ok(())
