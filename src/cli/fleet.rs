@@ -20,6 +20,8 @@ pub(super) use arguments::{FleetArguments, without_single_runs};
 pub(super) use folder::{locked, stem};
 pub use kept::FleetOutcome;
 pub(super) use kept::kept;
+#[cfg(feature = "serve")]
+pub(super) use run::LAST_EVENTS;
 pub use tally::FleetProgress;
 #[cfg(feature = "serve")]
 pub(super) use vessels::{as_columns, vessel_beside};

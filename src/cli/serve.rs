@@ -9,9 +9,12 @@
 //! | `publication`, `outbox` | what is published, and what has not arrived |
 //! | `link` | the broker |
 //! | `gateway` | the loop |
+//! | `status` | what the loop tells of itself |
+//! | `http` | the page, metrics and health checks |
 mod config;
 mod document;
 mod gateway;
+mod http;
 mod journal;
 mod keeper;
 mod link;
@@ -19,14 +22,17 @@ mod mapping;
 mod outbox;
 mod publication;
 mod recent;
+mod status;
 
 use super::interrupt;
 use super::message::Messages;
+use crate::report::{Input, Provenance, quoted};
 use clap::Args;
 use gateway::Gateway;
 use keeper::Keeper;
 use link::Link;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Arguments of `serve`.
 #[derive(Debug, Args)]
@@ -41,14 +47,29 @@ pub(super) struct ServeArguments {
 
 /// Runs until a signal comes.
 pub(super) fn run(arguments: ServeArguments, messages: &Messages) -> anyhow::Result<()> {
-    let (settings, broker) = config::read(&arguments.config)?;
+    let (mut settings, broker) = config::read(&arguments.config)?;
     if arguments.check {
         messages.say(&format!("{} can be used", arguments.config.display()));
         return Ok(());
     }
     interrupt::listen(|| {})?;
+    let page = settings.page.take();
+    let listener = page.as_ref().map(http::bound).transpose()?;
     let keeper = Keeper::open(&settings, messages)?;
+    if let (Some(page), Some(listener)) = (page, listener) {
+        messages.say(&format!("the page is at {}", page.address()));
+        let journal = settings.folder.join("journal");
+        let origin = provenance(&arguments.config)?;
+        http::serve(listener, http::Site::new(page, Arc::clone(&keeper.status), journal, origin))?;
+    }
     Gateway::new(&settings, keeper, Link::new(broker), messages).run()
+}
+
+/// Where the page comes from.
+fn provenance(config: &Path) -> anyhow::Result<Provenance> {
+    let name = config.display().to_string();
+    let inputs = vec![Input::of(name.clone(), &std::fs::read(config)?)];
+    Ok(Provenance { command: format!("cylwatch serve {}", quoted(&name)), inputs, seed: None })
 }
 
 const HELP: &str = "\

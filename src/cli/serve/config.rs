@@ -1,5 +1,7 @@
 //! Settings from the configuration, checked: whatever is wrong with it is told before the broker is called.
 mod broker;
+mod page;
+mod secret;
 
 use super::document::{Document, OptionsTable, TimeForm};
 use super::mapping::{Mapping, Pattern, Reading, has_filter, is_level};
@@ -10,6 +12,7 @@ use crate::thermal::ThermalError;
 use crate::thermal::document::{self, Places, check};
 use anyhow::{Context, anyhow, bail};
 pub(super) use broker::Broker;
+pub(super) use page::{Page, Token};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::OsString;
@@ -30,6 +33,8 @@ pub(super) struct Settings {
     pub prefix: String,
     /// Most cylinders.
     pub cylinders: usize,
+    /// `None`: nothing listens.
+    pub page: Option<Page>,
 }
 
 /// The call of `monitor` for a cylinder.
@@ -52,6 +57,12 @@ impl Assigned {
         }
         let call = ["monitor".into(), vessel_beside(checked.folder, vessel).into(), "<messages>".into()];
         Ok(Self(call.into_iter().chain(words.into_values().map(OsString::from)).collect()))
+    }
+
+    /// The vessel as it is named, without its folder.
+    pub(super) fn vessel(&self) -> String {
+        let name = self.0.get(1).and_then(|vessel| Path::new(vessel).file_name());
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
     }
 
     /// A monitor that has not begun.
@@ -232,6 +243,7 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
         by_pattern,
         prefix,
         cylinders: limit,
+        page: document.page.as_ref().map(|table| checked.page(table)).transpose()?,
     })
 }
 

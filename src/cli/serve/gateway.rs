@@ -1,5 +1,6 @@
 //! The gateway while it runs: messages in, results out, states saved one after the other.
 mod reception;
+mod turn;
 
 use super::config::Settings;
 use super::keeper::Keeper;
@@ -8,7 +9,7 @@ use super::mapping::Refusal;
 use crate::cli::interrupt;
 use crate::cli::message::Messages;
 use reception::LeftOut;
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
 
 /// Messages that go into the journal together.
@@ -29,7 +30,6 @@ pub(super) struct Gateway<'a> {
     /// The connection that there is.
     client: Option<Client>,
     deliveries: Vec<Delivery>,
-    refusals: BTreeMap<Refusal, u64>,
     /// What was said of cylinders.
     said: BTreeSet<(String, Refusal)>,
     /// Why there is no connection, as it was said.
@@ -58,7 +58,6 @@ impl<'a> Gateway<'a> {
             link,
             client: None,
             deliveries: Vec::new(),
-            refusals: BTreeMap::new(),
             said: BTreeSet::new(),
             down: None,
             saving: VecDeque::new(),
@@ -72,7 +71,8 @@ impl<'a> Gateway<'a> {
     /// Runs until a signal comes.
     pub(super) fn run(mut self) -> anyhow::Result<()> {
         while !interrupt::has_come() {
-            self.listen(PATIENCE)?;
+            let patience = self.turn();
+            self.listen(patience)?;
             self.save_some();
         }
         self.end()
@@ -147,6 +147,7 @@ impl<'a> Gateway<'a> {
                 // Not acknowledged: the broker delivers them again.
                 return Ok(());
             }
+            self.turn();
             std::thread::sleep(RETRY);
         }
         if std::mem::take(&mut self.unwritten) {
@@ -156,6 +157,7 @@ impl<'a> Gateway<'a> {
             // A receipt that does not go out costs one more delivery, which is known.
             deliveries.iter().for_each(|delivery| _ = client.acknowledge(delivery));
         }
+        self.keeper.outbox.cause = deliveries.iter().map(|delivery| delivery.arrived).min();
         for (name, input) in inputs {
             if let Err((refusal, reason)) = self.keeper.take(&name, input)? {
                 self.refuse(&name, refusal, &reason);
@@ -167,7 +169,7 @@ impl<'a> Gateway<'a> {
 
     /// Counts a message that is left out; says so once of a cylinder and a reason.
     fn refuse(&mut self, name: &str, refusal: Refusal, reason: &str) {
-        *self.refusals.entry(refusal).or_default() += 1;
+        self.keeper.status.refused(refusal);
         if refusal != Refusal::Again && self.said.insert((name.to_owned(), refusal)) {
             let whose = if name.is_empty() { String::new() } else { format!("{name}: ") };
             self.messages
@@ -186,6 +188,11 @@ impl<'a> Gateway<'a> {
                 self.client = None;
                 return;
             }
+            self.keeper
+                .outbox
+                .since()
+                .into_iter()
+                .for_each(|since| self.keeper.status.publish.observe(since.elapsed()));
         }
     }
 
@@ -205,6 +212,9 @@ impl<'a> Gateway<'a> {
         {
             self.next_save += self.pause;
             let saved = self.keeper.save(&name).map(|_| ());
+            if saved.is_err() {
+                self.keeper.status.states_failed.add();
+            }
             self.noted(saved);
         }
     }
@@ -236,10 +246,11 @@ impl<'a> Gateway<'a> {
             // Its thread sends what it has.
             while !matches!(self.link.next(PATIENCE), None | Some(FromBroker::Down(_))) {}
         }
+        let left_out = self.keeper.status.refusals().into_iter().filter(|(_, count)| *count > 0);
         let left_out: Vec<String> =
-            self.refusals.iter().map(|(refusal, count)| format!("{} ({count})", refusal.words())).collect();
-        let mut words =
-            format!("stopped by a signal: {} rows of {} cylinders", self.keeper.rows, self.keeper.len());
+            left_out.map(|(refusal, count)| format!("{} ({count})", refusal.words())).collect();
+        let rows = self.keeper.status.rows.count();
+        let mut words = format!("stopped by a signal: {rows} rows of {} cylinders", self.keeper.len());
         if !left_out.is_empty() {
             words.push_str(&format!("; messages left out: {}", left_out.join(", ")));
         }

@@ -11,6 +11,7 @@
 //!
 //! A state that is damaged, and one of a monitor that failed, is set aside under another name, and the monitor begins anew; that is an event.
 mod replay;
+mod show;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +21,7 @@ use super::mapping::{Accepted, Refusal};
 use super::outbox::Outbox;
 use super::publication;
 use super::recent::Recent;
+use super::status::Status;
 use crate::cli::StepTime;
 use crate::cli::fleet::{locked, stem};
 use crate::cli::message::Messages;
@@ -27,9 +29,12 @@ use crate::cli::monitor::{NotResumed, Steps, Told};
 use crate::cli::output::{make_folder, remove_orphans, write_file};
 use crate::report::Input;
 use anyhow::{Context, bail};
+use show::{Notes, Showing};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
 
 /// The zone in which times are told.
 const ZONE: &str = "UTC";
@@ -40,6 +45,7 @@ struct Cylinder {
     steps: Steps,
     /// The oldest segment with rows that its state does not know.
     unsaved_since: Option<u64>,
+    notes: Notes,
 }
 
 /// What goes to a monitor.
@@ -59,8 +65,8 @@ pub(super) struct Keeper<'a> {
     by_pattern: usize,
     pub outbox: Outbox,
     pub recent: Recent,
-    /// Rows that were taken in.
-    pub rows: u64,
+    pub status: Arc<Status>,
+    showing: Showing,
     _lock: File,
 }
 
@@ -86,7 +92,8 @@ impl<'a> Keeper<'a> {
             cylinders: BTreeMap::new(),
             outbox: Outbox::default(),
             recent: Recent::default(),
-            rows: 0,
+            status: Arc::default(),
+            showing: Showing::default(),
             _lock: lock,
         };
         keeper.replay(segments)?;
@@ -151,8 +158,9 @@ impl<'a> Keeper<'a> {
             (None, None) => Ok(()),
         };
         self.by_pattern += usize::from(!self.settings.named.contains_key(name));
-        self.cylinders
-            .insert(name.to_owned(), Cylinder { assigned: assigned.clone(), steps, unsaved_since: None });
+        let notes = Notes::of(&steps);
+        let cylinder = Cylinder { assigned: assigned.clone(), steps, unsaved_since: None, notes };
+        self.cylinders.insert(name.to_owned(), cylinder);
         match resumed {
             Ok(()) => Ok(()),
             Err(reason) => self.begin_anew(name, &reason),
@@ -169,7 +177,10 @@ impl<'a> Keeper<'a> {
                 Entry::Acknowledged { cylinder: name.clone(), comment: comment.clone() }
             }
         };
-        self.journal.append(&inputs.iter().map(entry).collect::<Vec<_>>())
+        let begin = Instant::now();
+        self.journal.append(&inputs.iter().map(entry).collect::<Vec<_>>())?;
+        self.status.journal.observe(begin.elapsed());
+        Ok(())
     }
 
     /// Gives what was recorded to its monitor.
@@ -184,9 +195,11 @@ impl<'a> Keeper<'a> {
         }
         match input {
             Delivered::Row(Accepted { time_ns, cells }) => {
-                self.rows += 1;
-                let names = self.names.clone();
-                self.step(name, &names, time_ns, &cells)
+                self.status.row(time_ns);
+                let (names, begin) = (self.names.clone(), Instant::now());
+                let stepped = self.step(name, &names, time_ns, &cells);
+                self.status.step.observe(begin.elapsed());
+                stepped
             }
             Delivered::Acknowledge(comment) => {
                 self.acknowledge(name, &comment);
@@ -206,6 +219,7 @@ impl<'a> Keeper<'a> {
         let readings: Vec<(&str, f64)> =
             names.iter().map(String::as_str).zip(cells.iter().copied()).collect();
         let had_begun = cylinder.steps.has_begun();
+        cylinder.notes.hear();
         match cylinder.steps.step(StepTime::Instant(time_ns, ZONE.to_owned()), &readings) {
             Ok((table, told)) => {
                 self.tell(name, &told);
@@ -234,6 +248,7 @@ impl<'a> Keeper<'a> {
         for one in told {
             self.messages.say(&format!("{name}: {}", one.words));
             self.outbox.push(publication::told(&self.settings.prefix, name, one));
+            self.cylinders.get_mut(name).into_iter().for_each(|cylinder| cylinder.notes.tell(&one.words));
         }
     }
 
@@ -246,6 +261,7 @@ impl<'a> Keeper<'a> {
         let number = self.journal.number();
         if let Some(cylinder) = self.cylinders.get_mut(name) {
             cylinder.steps = cylinder.assigned.monitor()?;
+            cylinder.notes.begin_anew(reason);
             cylinder.unsaved_since.get_or_insert(number);
         }
         self.outbox.push(publication::anew(&self.settings.prefix, name, reason));
@@ -295,6 +311,7 @@ impl<'a> Keeper<'a> {
         if let Some(cylinder) = self.cylinders.get_mut(name) {
             cylinder.unsaved_since = None;
         }
+        self.status.states_saved.add();
         Ok(true)
     }
 

@@ -6,7 +6,7 @@ use super::document::Protocol;
 use rumqttc::v5::mqttbytes::v5::{ConnectProperties, Filter, Packet as Packet5, PubAckReason};
 use rumqttc::{Outgoing, SubscribeFilter, v5};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Messages of the broker that wait at most; then it is not listened to.
 const WAITING: usize = 1024;
@@ -44,6 +44,7 @@ pub(super) struct Delivery {
     pub payload: Vec<u8>,
     /// Whether it may have been delivered before: once more, or as what the broker keeps.
     pub again: bool,
+    pub arrived: Instant,
     receipt: Receipt,
 }
 
@@ -155,6 +156,7 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                     topic: publish.topic.clone(),
                     payload: publish.payload.to_vec(),
                     again: publish.dup || publish.retain,
+                    arrived: Instant::now(),
                     receipt: Receipt::V4(rumqttc::Publish { payload: Vec::new().into(), ..publish }),
                 })),
                 rumqttc::Packet::PubAck(ack) => FromBroker::Arrived(ack.pkid, None),
@@ -191,6 +193,7 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                     topic: String::from_utf8_lossy(&publish.topic).into_owned(),
                     payload: publish.payload.to_vec(),
                     again: publish.dup || publish.retain,
+                    arrived: Instant::now(),
                     receipt: Receipt::V5(v5::mqttbytes::v5::Publish {
                         payload: Vec::new().into(),
                         ..publish
