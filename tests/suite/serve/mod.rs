@@ -1,5 +1,6 @@
 //! `cylwatch serve` beside a real broker: the events and states of `fleet`, through kills of either; bad configurations and bad messages.
 mod broker;
+mod http;
 mod refusals;
 
 use crate::support::{program, run};

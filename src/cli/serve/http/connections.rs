@@ -93,7 +93,7 @@ mod tests {
         let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
         let connections = Connections::default();
         let mut places = Vec::new();
-        let mut take = |places: &mut Vec<Arc<Place>>| {
+        let take = |places: &mut Vec<Arc<Place>>| {
             connections.take(|_, place| {
                 places.push(place);
                 runtime.spawn(std::future::pending::<()>()).abort_handle()

@@ -103,15 +103,9 @@ mod tests {
     #[test]
     fn only_hosts_that_are_this_machine_are_answered() {
         let names = ["gateway.depot".to_owned()];
-        for host in [
-            "localhost",
-            "localhost:8742",
-            "127.0.0.1:1",
-            "127.9.9.9",
-            "[::1]:8742",
-            "::1",
-            "Gateway.Depot:80",
-        ] {
+        for host in
+            ["localhost", "localhost:8742", "127.0.0.1:1", "127.9.9.9", "[::1]:8742", "Gateway.Depot:80"]
+        {
             assert!(is_own(&asked(host), &names), "{host}");
         }
         for host in

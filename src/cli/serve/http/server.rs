@@ -1,7 +1,7 @@
 //! Connections: each is one request, in a task of its own.
 use super::Site;
 use super::connections::{Connections, Place, Room};
-use super::limits::{FIELDS, HEAD_BYTES, Limit, REQUEST_TIME};
+use super::limits::{ANSWER_TIME, FIELDS, HEAD_BYTES, Limit, REQUEST_TIME, STALL_TIME};
 use super::patient::Patient;
 use super::routes::answer;
 use hyper::server::conn::http1;
@@ -68,7 +68,7 @@ impl Drop for Taken {
 async fn connected(stream: TcpStream, site: &Arc<Site>, place: &Arc<Place>) {
     // A slower connection is a connection.
     _ = stream.set_nodelay(true);
-    let stream = Patient::new(stream, Arc::clone(place));
+    let stream = Patient::new(stream, Arc::clone(place), STALL_TIME, ANSWER_TIME);
     let Some(tls) = &site.page.tls else { return asked(stream, site, place).await };
     match timeout(REQUEST_TIME, TlsAcceptor::from(Arc::clone(tls)).accept(stream)).await {
         Ok(Ok(stream)) => asked(stream, site, place).await,
