@@ -1,5 +1,6 @@
 //! Settings from the configuration, checked: whatever is wrong with it is told before the broker is called.
 mod broker;
+mod certificate;
 mod page;
 mod secret;
 

@@ -1,16 +1,14 @@
 //! Where the page listens, and what it asks for: a token and TLS wherever it is not this machine alone.
 use super::Checked;
+use super::certificate::{Certificate, Files};
 use crate::cli::serve::document::PageTable;
-use anyhow::{Context, bail};
+use anyhow::bail;
 use sha2::{Digest, Sha256};
 use std::net::SocketAddr;
-use std::path::PathBuf;
 use std::sync::Arc;
 use subtle::ConstantTimeEq;
 use tokio_rustls::rustls::ServerConfig;
 use tokio_rustls::rustls::crypto::ring;
-use tokio_rustls::rustls::pki_types::pem::PemObject;
-use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer};
 
 /// Shortest token, characters.
 const SHORTEST_TOKEN: usize = 16;
@@ -90,19 +88,16 @@ impl Checked<'_> {
     }
 
     fn tls(&self, certificate: &str, key: &str) -> anyhow::Result<Arc<ServerConfig>> {
-        let (of_certificate, of_key) = ("page.tls_certificate_file", "page.tls_key_file");
-        let unread =
-            |path: &str, file: &PathBuf| format!("{}: {} is not usable", self.at(path), file.display());
         let [certificate, key] = [certificate, key].map(|file| self.folder.join(file));
-        let chain =
-            CertificateDer::pem_file_iter(&certificate).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-        let chain = chain.with_context(|| unread(of_certificate, &certificate))?;
-        let key_read = PrivateKeyDer::from_pem_file(&key).with_context(|| unread(of_key, &key))?;
-        let configuration = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
+        let files = Files { certificate: certificate.clone(), key };
+        let certificate = Certificate::of(files).map_err(|(file, error)| {
+            let key = if file == certificate { "page.tls_certificate_file" } else { "page.tls_key_file" };
+            error.context(format!("{}: {} is not usable", self.at(key), file.display()))
+        })?;
+        let mut configuration = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
             .with_safe_default_protocol_versions()?
             .with_no_client_auth()
-            .with_single_cert(chain, key_read);
-        let mut configuration = configuration.with_context(|| unread(of_certificate, &certificate))?;
+            .with_cert_resolver(Arc::new(certificate));
         configuration.alpn_protocols = vec![b"http/1.1".to_vec()];
         Ok(Arc::new(configuration))
     }

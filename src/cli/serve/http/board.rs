@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Between two looks at what has changed.
-pub(in crate::cli::serve) const REFRESH: Duration = Duration::from_secs(1);
+pub(in crate::cli::serve) const REFRESH: Duration = Duration::from_secs(2);
 /// Rows of one event.
 const CHUNK: usize = 100;
 

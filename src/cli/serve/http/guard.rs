@@ -14,20 +14,18 @@ use hyper::{Method, Request, Response};
 /// How a browser is asked for the token: it then sends it with every request, those for events as well.
 const CHALLENGE: &str = "Basic realm=\"cylwatch: any user, the token as password\", charset=\"UTF-8\"";
 
-/// Refuses what is not to be answered.
-pub(super) async fn checked<B>(request: &Request<B>, site: &Site) -> Result<(), Response<Content>> {
+/// What a request is refused with; `None`: it may be answered.
+pub(super) async fn refused<B>(request: &Request<B>, site: &Site) -> Option<Response<Content>> {
     let refused = |limit: Limit, status: StatusCode, words| {
         site.counts.refuse(limit);
-        Err(refusal(status, words))
+        Some(refusal(status, words))
     };
     let headers = request.headers();
     if ![Method::GET, Method::HEAD].contains(request.method()) {
-        let response =
-            refused(Limit::Method, StatusCode::METHOD_NOT_ALLOWED, "only GET and HEAD are answered");
-        return response.map_err(|mut response| {
-            response.headers_mut().insert(ALLOW, HeaderValue::from_static("GET, HEAD"));
-            response
-        });
+        let mut response =
+            refused(Limit::Method, StatusCode::METHOD_NOT_ALLOWED, "only GET and HEAD are answered")?;
+        response.headers_mut().insert(ALLOW, HeaderValue::from_static("GET, HEAD"));
+        return Some(response);
     }
     let has_length = headers.get(CONTENT_LENGTH).is_some_and(|length| length != "0");
     if has_length || headers.contains_key(TRANSFER_ENCODING) {
@@ -38,8 +36,10 @@ pub(super) async fn checked<B>(request: &Request<B>, site: &Site) -> Result<(), 
         return refused(Limit::Host, StatusCode::MISDIRECTED_REQUEST, words);
     }
     match &site.page.token {
-        Some(token) if request.uri().path() != super::routes::HEALTH => admitted(headers, token, site).await,
-        _ => Ok(()),
+        Some(token) if request.uri().path() != super::routes::HEALTH => {
+            unadmitted(headers, token, site).await
+        }
+        _ => None,
     }
 }
 
@@ -60,10 +60,10 @@ fn is_own<B>(request: &Request<B>, names: &[String]) -> bool {
     is_loopback || is_named("localhost") || names.iter().any(|known| is_named(known))
 }
 
-async fn admitted(headers: &HeaderMap, token: &Token, site: &Site) -> Result<(), Response<Content>> {
+async fn unadmitted(headers: &HeaderMap, token: &Token, site: &Site) -> Option<Response<Content>> {
     let given = headers.get(AUTHORIZATION).and_then(|value| value.to_str().ok()).map(token_of);
     match given {
-        Some(Some(given)) if token.is(&given) => return Ok(()),
+        Some(Some(given)) if token.is(&given) => return None,
         None => {}
         Some(_) => {
             site.counts.refuse(Limit::Token);
@@ -75,7 +75,7 @@ async fn admitted(headers: &HeaderMap, token: &Token, site: &Site) -> Result<(),
     let mut response =
         refusal(StatusCode::UNAUTHORIZED, "a token is needed: as Bearer, or as password of any user");
     response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static(CHALLENGE));
-    Err(response)
+    Some(response)
 }
 
 /// The token of a header: `Bearer TOKEN`, or `Basic` with any user and the token.

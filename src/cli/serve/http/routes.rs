@@ -32,9 +32,9 @@ pub(super) struct Rendered(Mutex<Option<(u64, Instant, Bytes)>>);
 
 /// Answers a request.
 pub(super) async fn answer<B>(request: &Request<B>, site: &Arc<Site>, place: &Place) -> Response<Content> {
-    let mut response = match guard::checked(request, site).await {
-        Err(refused) => refused,
-        Ok(()) => match request.uri().path() {
+    let mut response = match guard::refused(request, site).await {
+        Some(refused) => refused,
+        None => match request.uri().path() {
             "/" => page(site).await,
             "/events" => stream(request, site, place),
             "/metrics" => text(StatusCode::OK, metrics::FORMAT, metrics::text(site)),
