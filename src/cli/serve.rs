@@ -5,12 +5,14 @@
 //! |---|---|
 //! | `document`, `config` | the configuration, as written and checked |
 //! | `mapping` | a message becomes a row of a cylinder |
-//! | `journal`, `keeper`, `recent` | rows and states on disk; what is guaranteed stands in `keeper` |
+//! | `journal`, `keeper`, `saver`, `recent` | rows and states on disk; what is guaranteed stands in `keeper` |
+//! | `silence`, `alarms` | cylinders that send nothing, and the gateway's own alarms |
 //! | `publication`, `outbox` | what is published, and what has not arrived |
 //! | `link` | the broker |
 //! | `gateway` | the loop |
 //! | `status` | what the loop tells of itself |
 //! | `http` | the page, metrics and health checks |
+mod alarms;
 mod config;
 mod document;
 mod gateway;
@@ -22,17 +24,16 @@ mod mapping;
 mod outbox;
 mod publication;
 mod recent;
+mod saver;
+mod signals;
+mod silence;
 mod status;
 
-use super::interrupt;
 use super::message::Messages;
 use crate::report::{Input, Provenance, quoted};
 use clap::Args;
 use gateway::Gateway;
-use keeper::Keeper;
-use link::Link;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Arguments of `serve`.
 #[derive(Debug, Args)]
@@ -52,17 +53,15 @@ pub(super) fn run(arguments: ServeArguments, messages: &Messages) -> anyhow::Res
         messages.say(&format!("{} can be used", arguments.config.display()));
         return Ok(());
     }
-    interrupt::listen(|| {})?;
     let page = settings.page.take();
     let listener = page.as_ref().map(http::bound).transpose()?;
-    let keeper = Keeper::open(&settings, messages)?;
+    let (journal, origin) = (settings.folder.join("journal"), provenance(&arguments.config)?);
+    let gateway = Gateway::new(arguments.config, (settings, broker), messages)?;
     if let (Some(page), Some(listener)) = (page, listener) {
         messages.say(&format!("the page is at {}", page.address()));
-        let journal = settings.folder.join("journal");
-        let origin = provenance(&arguments.config)?;
-        http::serve(listener, http::Site::new(page, Arc::clone(&keeper.status), journal, origin))?;
+        http::serve(listener, http::Site::new(page, gateway.status(), journal, origin))?;
     }
-    Gateway::new(&settings, keeper, Link::new(broker), messages).run()
+    gateway.run()
 }
 
 /// Where the page comes from.
@@ -87,7 +86,7 @@ has its time and its readings:
   [[cylinder]]
   name = \"A12\"
   type = \"rail\"
-  topic = \"train/7/A12\"
+  topic = \"train/7/A12\"           # silent_after_min = 60
   [payload]
   time = \"/t\"                     # clock = \"rfc3339\", \"seconds\", \"milliseconds\" or \"arrival\"
   [[payload.reading]]
@@ -105,7 +104,8 @@ It publishes cylwatch/NAME/verdict, estimate and alarm/ALARM, which the broker k
 cylwatch/NAME/event, at quality of service 1. A comment to cylwatch/NAME/acknowledge acknowledges
 the alarms. Rows that were accepted and events survive a kill; see book/src/serve.md.
 
-Ctrl-C and SIGTERM save all states and end with exit code 0; 2 the configuration is wrong.
+Ctrl-C and SIGTERM save all states and end with exit code 0; 2 the configuration is wrong. SIGHUP
+reads the configuration again: it is taken over whole or refused whole.
 
 Examples:
   cylwatch serve gateway.toml --check

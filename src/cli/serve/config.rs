@@ -9,6 +9,7 @@ use super::mapping::{Mapping, Pattern, Reading, has_filter, is_level};
 use crate::cli::fleet::{as_columns, vessel_beside};
 use crate::cli::monitor::Steps;
 use crate::cli::monitor_steps;
+use crate::report::Input;
 use crate::thermal::ThermalError;
 use crate::thermal::document::{self, Places, check};
 use anyhow::{Context, anyhow, bail};
@@ -38,17 +39,33 @@ pub(super) struct Settings {
     pub page: Option<Page>,
 }
 
-/// The call of `monitor` for a cylinder.
-#[derive(Clone)]
-pub(super) struct Assigned(Vec<OsString>);
+/// Without a row for so long a cylinder is silent, unless the configuration says otherwise, s.
+const SILENT_AFTER_S: f64 = 3600.0;
+
+/// The call of `monitor` for a cylinder, and when it is silent.
+#[derive(Clone, PartialEq)]
+pub(super) struct Assigned {
+    call: Vec<OsString>,
+    /// SHA-256 of the files that it names: they may change while the gateway runs.
+    files: Vec<String>,
+    pub silent_after: Duration,
+}
 
 impl Assigned {
     /// Of tables at their paths; a later one counts more.
-    fn new(vessel: &str, tables: &[(String, &OptionsTable)], checked: &Checked<'_>) -> anyhow::Result<Self> {
+    fn new(
+        vessel: &str,
+        tables: &[(String, &OptionsTable)],
+        silent_after: Duration,
+        checked: &Checked<'_>,
+    ) -> anyhow::Result<Self> {
         let mut words: BTreeMap<String, String> = BTreeMap::new();
+        let vessel = vessel_beside(checked.folder, vessel);
+        let mut files = vec![PathBuf::from(&vessel)];
         for (path, table) in tables {
             let Value::Object(values) = serde_json::to_value(table)? else { continue };
             for (field, value) in values {
+                files.extend(value.as_str().map(|file| checked.folder.join(file)));
                 match checked.word(&format!("{path}.{field}"), &value) {
                     Some(word) => _ = words.insert(field, word),
                     None if value == Value::Bool(false) => _ = words.remove(&field),
@@ -56,19 +73,24 @@ impl Assigned {
                 }
             }
         }
-        let call = ["monitor".into(), vessel_beside(checked.folder, vessel).into(), "<messages>".into()];
-        Ok(Self(call.into_iter().chain(words.into_values().map(OsString::from)).collect()))
+        let call = ["monitor".into(), vessel.into(), "<messages>".into()];
+        let call = call.into_iter().chain(words.into_values().map(OsString::from)).collect();
+        // A vessel of the program is no file.
+        let files = files.iter().filter_map(|file| std::fs::read(file).ok());
+        let files = files.map(|bytes| Input::of("", &bytes).sha256).collect();
+        Ok(Self { call, files, silent_after })
     }
 
     /// The vessel as it is named, without its folder.
     pub(super) fn vessel(&self) -> String {
-        let name = self.0.get(1).and_then(|vessel| Path::new(vessel).file_name());
+        let name = self.call.get(1).and_then(|vessel| Path::new(vessel).file_name());
         name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
     }
 
     /// A monitor that has not begun.
     pub(super) fn monitor(&self) -> anyhow::Result<Steps> {
-        monitor_steps(&self.0, Vec::new()).map_err(|error| anyhow!("{}", as_columns(&format!("{error:#}"))))
+        monitor_steps(&self.call, Vec::new())
+            .map_err(|error| anyhow!("{}", as_columns(&format!("{error:#}"))))
     }
 }
 
@@ -102,6 +124,11 @@ impl Checked<'_> {
             // A number of TOML may be grouped.
             _ => Some(format!("--{option}={}", text.replace('_', ""))),
         }
+    }
+
+    /// When a cylinder is silent.
+    fn silent_after(&self, path: &str, given: Option<f64>, usual: f64) -> anyhow::Result<Duration> {
+        self.seconds(path, given, usual, (1.0, 400.0 * 86_400.0))
     }
 
     /// A time within bounds.
@@ -181,8 +208,10 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
             )?;
         }
         let (of_kind, kind) = kind(path("type"), &cylinder.kind)?;
+        let usual_s = kind.silent_after_s.unwrap_or(SILENT_AFTER_S);
+        let silent_after = checked.silent_after(&path("silent_after_s"), cylinder.silent_after_s, usual_s)?;
         let tables = [(of_kind, &kind.options), (path("options"), &cylinder.options)];
-        let assigned = Assigned::new(&kind.vessel, &tables, checked)?;
+        let assigned = Assigned::new(&kind.vessel, &tables, silent_after, checked)?;
         assigned
             .monitor()
             .and_then(|steps| steps.check(&names))
@@ -212,7 +241,9 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
             checked.refuse("pattern.topic", &table.topic, bound, "leave out #")?;
         }
         let (path, kind) = kind("pattern.type".to_owned(), &table.kind)?;
-        by_pattern = Some(Assigned::new(&kind.vessel, &[(path, &kind.options)], checked)?);
+        let silent_after =
+            checked.silent_after("type.silent_after_s", kind.silent_after_s, SILENT_AFTER_S)?;
+        by_pattern = Some(Assigned::new(&kind.vessel, &[(path, &kind.options)], silent_after, checked)?);
     }
     if named.is_empty() && pattern.is_none() {
         bail!("{}: there is no cylinder: write a [[cylinder]] for each, or a [pattern]", checked.at(""));
@@ -283,7 +314,12 @@ fn types(
     for (i, kind) in document.types.iter().enumerate() {
         let path = format!("type[{i}].name");
         let options = (format!("type[{i}].options"), &kind.options);
-        let assigned = Assigned::new(&kind.vessel, &[options], checked)?;
+        let silent_after = checked.silent_after(
+            &format!("type[{i}].silent_after_s"),
+            kind.silent_after_s,
+            SILENT_AFTER_S,
+        )?;
+        let assigned = Assigned::new(&kind.vessel, &[options], silent_after, checked)?;
         assigned.monitor().and_then(|steps| steps.check(names)).with_context(|| checked.at(&path))?;
         if types.insert(kind.name.clone(), i).is_some() {
             checked.refuse(&path, &kind.name, "the name of one type", "it stands there twice")?;

@@ -58,6 +58,7 @@ pub(super) struct StoreTable {
 pub(super) struct TypeTable {
     pub name: String,
     pub vessel: String,
+    pub silent_after_s: Option<f64>,
     #[serde(default)]
     pub options: OptionsTable,
 }
@@ -88,6 +89,7 @@ pub(super) struct CylinderTable {
     #[serde(rename = "type")]
     pub kind: String,
     pub topic: String,
+    pub silent_after_s: Option<f64>,
     #[serde(default)]
     pub options: OptionsTable,
 }

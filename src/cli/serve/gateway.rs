@@ -1,15 +1,23 @@
 //! The gateway while it runs: messages in, results out, states saved one after the other.
+mod batch;
 mod reception;
+mod reload;
+mod saving;
 mod turn;
 
-use super::config::Settings;
+use super::config::{Broker, Settings};
 use super::keeper::Keeper;
-use super::link::{Client, Delivery, FromBroker, Link, WINDOW};
+use super::link::{Client, FromBroker, Link, WINDOW};
 use super::mapping::Refusal;
-use crate::cli::interrupt;
+use super::saver::TOGETHER;
+use super::signals::Signals;
 use crate::cli::message::Messages;
-use reception::LeftOut;
-use std::collections::{BTreeSet, VecDeque};
+use batch::Batch;
+use reload::Reload;
+use saving::Saving;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Messages that go into the journal together.
@@ -23,68 +31,82 @@ const FAREWELL: Duration = Duration::from_secs(5);
 
 /// The gateway.
 pub(super) struct Gateway<'a> {
-    settings: &'a Settings,
+    /// The file of the configuration.
+    path: PathBuf,
+    settings: Arc<Settings>,
+    broker: Broker,
     messages: &'a Messages,
+    signals: Signals,
     keeper: Keeper<'a>,
     link: Link,
     /// The connection that there is.
     client: Option<Client>,
-    deliveries: Vec<Delivery>,
+    batch: Batch,
     /// What was said of cylinders.
     said: BTreeSet<(String, Refusal)>,
     /// Why there is no connection, as it was said.
     down: Option<String>,
-    /// States to save, the next first, when, and the time between two of them.
-    saving: VecDeque<String>,
-    next_save: Instant,
-    pause: Duration,
-    next_round: Instant,
-    /// Why the disk cannot be written, as it was said.
-    unwritten: bool,
+    saving: Saving,
+    /// A configuration that waits to be taken over.
+    reload: Option<Reload>,
 }
 
 impl<'a> Gateway<'a> {
+    /// With the configuration of a file.
     pub(super) fn new(
-        settings: &'a Settings,
-        keeper: Keeper<'a>,
-        link: Link,
+        path: PathBuf,
+        (settings, broker): (Settings, Broker),
         messages: &'a Messages,
-    ) -> Self {
-        let now = Instant::now();
-        Self {
+    ) -> anyhow::Result<Self> {
+        let signals = Signals::listen()?;
+        let settings = Arc::new(settings);
+        Ok(Self {
+            path,
+            keeper: Keeper::open(Arc::clone(&settings), messages)?,
+            saving: Saving::new(settings.save_every),
             settings,
+            link: Link::new(broker.clone()),
+            broker,
             messages,
-            keeper,
-            link,
+            signals,
             client: None,
-            deliveries: Vec::new(),
+            batch: Batch::default(),
             said: BTreeSet::new(),
             down: None,
-            saving: VecDeque::new(),
-            next_save: now,
-            pause: Duration::ZERO,
-            next_round: now + settings.save_every,
-            unwritten: false,
-        }
+            reload: None,
+        })
     }
 
     /// Runs until a signal comes.
     pub(super) fn run(mut self) -> anyhow::Result<()> {
-        while !interrupt::has_come() {
+        while !self.signals.end() {
             let patience = self.turn();
-            self.listen(patience)?;
+            self.listen(patience);
+            self.begin_anew();
+            self.look_for_silence();
             self.save_some();
+            if self.signals.reload() {
+                self.read_again();
+            }
+            self.take_over();
         }
         self.end()
     }
 
     /// Takes in what has come, after a wait if nothing has.
-    fn listen(&mut self, patience: Duration) -> anyhow::Result<()> {
+    fn listen(&mut self, patience: Duration) {
         let mut patience = patience;
-        while let Some(said) = self.link.next(patience) {
+        if self.batch.len() >= BATCH {
+            // They wait for the disk.
+            std::thread::sleep(patience);
+            return self.take();
+        }
+        while self.batch.len() < BATCH
+            && let Some(said) = self.link.next(patience)
+        {
             patience = Duration::ZERO;
             match said {
-                FromBroker::Message(delivery) => self.deliveries.push(*delivery),
+                FromBroker::Message(delivery) => self.receive(*delivery),
                 FromBroker::Sent(packet) => self.keeper.outbox.sent(packet),
                 FromBroker::Arrived(packet, refused) => {
                     if let Some(reason) = refused {
@@ -93,12 +115,10 @@ impl<'a> Gateway<'a> {
                     self.keeper.outbox.arrived(packet);
                     self.send();
                 }
-                FromBroker::Up(client, is_known) => {
-                    self.take()?;
-                    self.up(client, is_known);
-                }
+                FromBroker::Up(client, is_known) => self.up(client, is_known),
                 FromBroker::Down(reason) => {
-                    self.take()?;
+                    self.take();
+                    self.drop_batch();
                     self.client = None;
                     if self.down.as_ref() != Some(&reason) {
                         self.messages
@@ -107,16 +127,14 @@ impl<'a> Gateway<'a> {
                     }
                 }
             }
-            if self.deliveries.len() >= BATCH {
-                break;
-            }
         }
-        self.take()
+        self.take();
     }
 
     fn up(&mut self, client: Client, is_known: bool) {
         self.messages.say("connected to the broker");
         self.down = None;
+        self.keeper.silence.begin(Instant::now());
         self.keeper.outbox.connected(is_known);
         if let Err(error) = client.subscribe(&self.settings.mapping.filters()) {
             self.messages.caution(&format!("the topics cannot be subscribed to: {error:#}"));
@@ -125,46 +143,16 @@ impl<'a> Gateway<'a> {
         self.send();
     }
 
-    /// Puts what was delivered on disk, tells the broker, and gives it to the monitors.
-    fn take(&mut self) -> anyhow::Result<()> {
-        let deliveries = std::mem::take(&mut self.deliveries);
-        if deliveries.is_empty() {
-            return Ok(());
+    /// Raises the alarm of cylinders that have fallen silent, where rows could have come.
+    fn look_for_silence(&mut self) {
+        let now = Instant::now();
+        if self.client.is_none() || self.batch.len() > 0 {
+            self.keeper.silence.begin(now);
+            return;
         }
-        let mut inputs = Vec::new();
-        for delivery in &deliveries {
-            match self.read(delivery) {
-                Ok(input) => inputs.push(input),
-                Err(LeftOut { name, refusal, reason }) => self.refuse(&name, refusal, &reason),
-            }
-        }
-        while let Err(error) = self.keeper.record(&inputs) {
-            if !std::mem::replace(&mut self.unwritten, true) {
-                self.messages
-                    .caution(&format!("{error:#}; the broker keeps the rows, and it is tried again"));
-            }
-            if interrupt::has_come() {
-                // Not acknowledged: the broker delivers them again.
-                return Ok(());
-            }
-            self.turn();
-            std::thread::sleep(RETRY);
-        }
-        if std::mem::take(&mut self.unwritten) {
-            self.messages.caution("the disk can be written again");
-        }
-        if let Some(client) = &self.client {
-            // A receipt that does not go out costs one more delivery, which is known.
-            deliveries.iter().for_each(|delivery| _ = client.acknowledge(delivery));
-        }
-        self.keeper.outbox.cause = deliveries.iter().map(|delivery| delivery.arrived).min();
-        for (name, input) in inputs {
-            if let Err((refusal, reason)) = self.keeper.take(&name, input)? {
-                self.refuse(&name, refusal, &reason);
-            }
-        }
+        self.keeper.look_for_silence(now);
+        self.publish_alarms();
         self.send();
-        Ok(())
     }
 
     /// Counts a message that is left out; says so once of a cylinder and a reason.
@@ -188,45 +176,8 @@ impl<'a> Gateway<'a> {
                 self.client = None;
                 return;
             }
-            self.keeper
-                .outbox
-                .since()
-                .into_iter()
-                .for_each(|since| self.keeper.status.publish.observe(since.elapsed()));
-        }
-    }
-
-    /// Saves the states whose turn it is: spread over the first half of each round, so that not all are written at once.
-    fn save_some(&mut self) {
-        let now = Instant::now();
-        if now >= self.next_round {
-            self.next_round = now + self.settings.save_every;
-            let turned = self.keeper.turn_over();
-            self.noted(turned);
-            self.saving = self.keeper.unsaved().into();
-            self.next_save = now;
-            self.pause = self.settings.save_every / 2 / (self.saving.len().max(1) as u32);
-        }
-        while now >= self.next_save
-            && let Some(name) = self.saving.pop_front()
-        {
-            self.next_save += self.pause;
-            let saved = self.keeper.save(&name).map(|_| ());
-            if saved.is_err() {
-                self.keeper.status.states_failed.add();
-            }
-            self.noted(saved);
-        }
-    }
-
-    /// Says once that the disk cannot be written; what waits is tried again in the next round.
-    fn noted(&mut self, written: anyhow::Result<()>) {
-        match written {
-            Ok(()) => {}
-            Err(error) if self.unwritten => _ = error,
-            Err(error) => {
-                self.unwritten = true;
-                self.messages.caution(&format!("{error:#}; it is tried again"));
+            if let Some(since) = self.keeper.outbox.since() {
+                self.keeper.status.publish.observe(since.elapsed());
             }
         }
     }
@@ -235,11 +186,16 @@ impl<'a> Gateway<'a> {
     fn end(mut self) -> anyhow::Result<()> {
         let until = Instant::now() + FAREWELL;
         while self.client.is_some() && self.keeper.outbox.len() > 0 && Instant::now() < until {
-            self.listen(PATIENCE)?;
+            self.listen(PATIENCE);
         }
-        let mut waiting = 0;
-        for name in self.keeper.unsaved() {
-            waiting += usize::from(!self.keeper.save(&name)?);
+        // What is being written may be older than the last rows.
+        let mut saved = self.keeper.settle();
+        for some in self.keeper.unsaved().chunks(TOGETHER) {
+            saved = saved.and_then(|()| self.keeper.save(some)).and_then(|()| self.keeper.settle());
+        }
+        if let Err(error) = saved {
+            let words = format!("{error:#}; the journal has the rows since the last states");
+            self.messages.caution(&words);
         }
         if let Some(client) = &self.client {
             client.disconnect();
@@ -254,8 +210,9 @@ impl<'a> Gateway<'a> {
         if !left_out.is_empty() {
             words.push_str(&format!("; messages left out: {}", left_out.join(", ")));
         }
-        words.push_str(match waiting {
-            0 => "; the states are saved",
+        words.push_str(match (self.keeper.unsaved().len(), self.keeper.outbox.len()) {
+            (0, _) => "; the states are saved",
+            (_, 0) => "; not all states are saved",
             _ => "; events have not arrived, and go out after the next start",
         });
         self.messages.say(&words);

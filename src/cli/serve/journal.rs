@@ -28,8 +28,8 @@ pub(super) enum Entry {
     Acknowledged { cylinder: String, comment: String },
     /// The state with this hash is going to be written; it knows everything before.
     Saving { cylinder: String, sha256: String },
-    /// The monitor begins anew with what follows.
-    Anew { cylinder: String, reason: String },
+    /// The monitor begins anew with what follows; the time is that of the last row before, since 1970.
+    Anew { cylinder: String, reason: String, time_s: f64 },
 }
 
 impl Entry {
@@ -103,6 +103,12 @@ impl Journal {
         let (file, length) = begun(&self.folder, self.number + 1, &self.names)?;
         (self.file, self.length, self.number) = (file, length, self.number + 1);
         Ok(())
+    }
+
+    /// Goes on in a new segment, with rows of other readings.
+    pub(super) fn go_on_with(&mut self, names: &[String]) -> anyhow::Result<()> {
+        let before = std::mem::replace(&mut self.names, names.to_vec());
+        self.rotate().inspect_err(|_| self.names = before)
     }
 
     /// Removes the segments before one.

@@ -10,29 +10,38 @@
 //! - at most the rows since the last state are computed twice.
 //!
 //! A state that is damaged, and one of a monitor that failed, is set aside under another name, and the monitor begins anew; that is an event.
+mod anew;
+mod own;
+mod pattern;
+mod reload;
 mod replay;
+mod rows;
+mod saving;
 mod show;
 #[cfg(test)]
 mod tests;
 
+use super::alarms::{Alarms, Kind};
 use super::config::{Assigned, Settings};
 use super::journal::{Entry, Journal, Segment};
 use super::mapping::{Accepted, Refusal};
 use super::outbox::Outbox;
 use super::publication;
 use super::recent::Recent;
+use super::saver::Saver;
+use super::silence::Silence;
 use super::status::Status;
 use crate::cli::StepTime;
 use crate::cli::fleet::{locked, stem};
 use crate::cli::message::Messages;
 use crate::cli::monitor::{NotResumed, Steps, Told};
-use crate::cli::output::{make_folder, remove_orphans, write_file};
+use crate::cli::output::{make_folder, remove_orphans};
 use crate::report::Input;
 use anyhow::{Context, bail};
 use show::{Notes, Showing};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -43,8 +52,11 @@ const ZONE: &str = "UTC";
 struct Cylinder {
     assigned: Assigned,
     steps: Steps,
-    /// The oldest segment with rows that its state does not know.
+    /// The oldest segment with rows that its state does not know, and of those that the state knows that is being written.
     unsaved_since: Option<u64>,
+    saving_since: Option<u64>,
+    /// Why its monitor has failed, until it has begun anew.
+    failed: Option<String>,
     notes: Notes,
 }
 
@@ -56,15 +68,24 @@ pub(super) enum Delivered {
 
 /// All monitors.
 pub(super) struct Keeper<'a> {
-    settings: &'a Settings,
+    settings: Arc<Settings>,
     messages: &'a Messages,
     names: Vec<String>,
     journal: Journal,
     cylinders: BTreeMap<String, Cylinder>,
     /// Cylinders that came by the pattern.
     by_pattern: usize,
+    /// Their names on disk.
+    noted: Vec<String>,
+    /// Cylinders whose monitors have failed.
+    failed: BTreeSet<String>,
+    alarms: Alarms,
+    /// Changes of these alarms that are not published yet.
+    own: Vec<(String, Told)>,
+    pub silence: Silence,
     pub outbox: Outbox,
     pub recent: Recent,
+    saver: Saver,
     pub status: Arc<Status>,
     showing: Showing,
     _lock: File,
@@ -72,7 +93,7 @@ pub(super) struct Keeper<'a> {
 
 impl<'a> Keeper<'a> {
     /// Goes on from what is on disk.
-    pub(super) fn open(settings: &'a Settings, messages: &'a Messages) -> anyhow::Result<Self> {
+    pub(super) fn open(settings: Arc<Settings>, messages: &'a Messages) -> anyhow::Result<Self> {
         let folder = &settings.folder;
         make_folder(folder)?;
         let lock = locked(folder, "choose another folder in [store]")?;
@@ -83,15 +104,25 @@ impl<'a> Keeper<'a> {
         let names: Vec<String> =
             settings.mapping.readings.iter().map(|reading| reading.name.clone()).collect();
         let (journal, segments) = Journal::open(&folder.join("journal"), &names)?;
+        let (alarms, damage) = Alarms::open(&folder.join("alarms"))?;
+        if let Some(damage) = damage {
+            messages.caution(&format!("{damage}; it is set aside, and what was silent is told anew"));
+        }
         let mut keeper = Self {
             by_pattern: 0,
-            settings,
+            noted: Vec::new(),
+            failed: BTreeSet::new(),
+            own: alarms.told().map(|(name, told)| (name.to_owned(), told.clone())).collect(),
+            alarms,
+            silence: Silence::default(),
+            settings: Arc::clone(&settings),
             messages,
             names,
             journal,
             cylinders: BTreeMap::new(),
             outbox: Outbox::default(),
             recent: Recent::default(),
+            saver: Saver::new(),
             status: Arc::default(),
             showing: Showing::default(),
             _lock: lock,
@@ -100,6 +131,9 @@ impl<'a> Keeper<'a> {
         for (name, assigned) in &settings.named {
             keeper.know(name, assigned)?;
         }
+        keeper.take_up_noted()?;
+        keeper.begin_failed_anew()?;
+        keeper.publish_alarms()?;
         Ok(keeper)
     }
 
@@ -125,8 +159,8 @@ impl<'a> Keeper<'a> {
         if self.by_pattern >= most || self.cylinders.len() >= self.settings.cylinders {
             return refused(Refusal::TooManyCylinders);
         }
-        let Some(assigned) = &self.settings.by_pattern else { return refused(Refusal::UnknownTopic) };
-        self.know(name, assigned).map_err(|error| (Refusal::Monitor, format!("{error:#}")))
+        let Some(assigned) = self.settings.by_pattern.clone() else { return refused(Refusal::UnknownTopic) };
+        self.know(name, &assigned).map_err(|error| (Refusal::Monitor, format!("{error:#}")))
     }
 
     /// Whether there is a cylinder of this name.
@@ -158,169 +192,23 @@ impl<'a> Keeper<'a> {
             (None, None) => Ok(()),
         };
         self.by_pattern += usize::from(!self.settings.named.contains_key(name));
+        self.silence.watch(name, assigned.silent_after, Instant::now());
         let notes = Notes::of(&steps);
-        let cylinder = Cylinder { assigned: assigned.clone(), steps, unsaved_since: None, notes };
-        self.cylinders.insert(name.to_owned(), cylinder);
+        self.cylinders.insert(
+            name.to_owned(),
+            Cylinder {
+                notes,
+                assigned: assigned.clone(),
+                steps,
+                unsaved_since: None,
+                saving_since: None,
+                failed: None,
+            },
+        );
         match resumed {
             Ok(()) => Ok(()),
             Err(reason) => self.begin_anew(name, &reason),
         }
-    }
-
-    /// Puts rows and acknowledgements on disk; only then they are accepted.
-    pub(super) fn record(&mut self, inputs: &[(String, Delivered)]) -> anyhow::Result<()> {
-        let entry = |(name, input): &(String, Delivered)| match input {
-            Delivered::Row(Accepted { time_ns, cells }) => {
-                Entry::Row { cylinder: name.clone(), time_ns: *time_ns, cells: cells.clone() }
-            }
-            Delivered::Acknowledge(comment) => {
-                Entry::Acknowledged { cylinder: name.clone(), comment: comment.clone() }
-            }
-        };
-        let begin = Instant::now();
-        self.journal.append(&inputs.iter().map(entry).collect::<Vec<_>>())?;
-        self.status.journal.observe(begin.elapsed());
-        Ok(())
-    }
-
-    /// Gives what was recorded to its monitor.
-    pub(super) fn take(
-        &mut self,
-        name: &str,
-        input: Delivered,
-    ) -> anyhow::Result<Result<(), (Refusal, String)>> {
-        let number = self.journal.number();
-        if let Some(cylinder) = self.cylinders.get_mut(name) {
-            cylinder.unsaved_since.get_or_insert(number);
-        }
-        match input {
-            Delivered::Row(Accepted { time_ns, cells }) => {
-                self.status.row(time_ns);
-                let (names, begin) = (self.names.clone(), Instant::now());
-                let stepped = self.step(name, &names, time_ns, &cells);
-                self.status.step.observe(begin.elapsed());
-                stepped
-            }
-            Delivered::Acknowledge(comment) => {
-                self.acknowledge(name, &comment);
-                Ok(Ok(()))
-            }
-        }
-    }
-
-    fn step(
-        &mut self,
-        name: &str,
-        names: &[String],
-        time_ns: i64,
-        cells: &[f64],
-    ) -> anyhow::Result<Result<(), (Refusal, String)>> {
-        let Some(cylinder) = self.cylinders.get_mut(name) else { return Ok(Ok(())) };
-        let readings: Vec<(&str, f64)> =
-            names.iter().map(String::as_str).zip(cells.iter().copied()).collect();
-        let had_begun = cylinder.steps.has_begun();
-        cylinder.notes.hear();
-        match cylinder.steps.step(StepTime::Instant(time_ns, ZONE.to_owned()), &readings) {
-            Ok((table, told)) => {
-                self.tell(name, &told);
-                publication::last_row(&self.settings.prefix, name, &table)
-                    .into_iter()
-                    .for_each(|message| self.outbox.push(message));
-                Ok(Ok(()))
-            }
-            Err(error) => {
-                let reason = format!("{error:#}");
-                if had_begun {
-                    // It may have taken in a part of the row.
-                    self.begin_anew(name, &reason)?;
-                }
-                Ok(Err((Refusal::Monitor, reason)))
-            }
-        }
-    }
-
-    fn acknowledge(&mut self, name: &str, comment: &str) {
-        let told = self.cylinders.get_mut(name).map(|cylinder| cylinder.steps.acknowledge(comment));
-        self.tell(name, &told.unwrap_or_default());
-    }
-
-    fn tell(&mut self, name: &str, told: &[Told]) {
-        for one in told {
-            self.messages.say(&format!("{name}: {}", one.words));
-            self.outbox.push(publication::told(&self.settings.prefix, name, one));
-            self.cylinders.get_mut(name).into_iter().for_each(|cylinder| cylinder.notes.tell(&one.words));
-        }
-    }
-
-    /// Begins a monitor anew: said, an event, and what it had is set aside.
-    fn begin_anew(&mut self, name: &str, reason: &str) -> anyhow::Result<()> {
-        self.messages
-            .caution(&format!("{name}: {reason}; its state is set aside and its monitor begins anew"));
-        self.journal.append(&[Entry::Anew { cylinder: name.to_owned(), reason: reason.to_owned() }])?;
-        self.set_aside(name)?;
-        let number = self.journal.number();
-        if let Some(cylinder) = self.cylinders.get_mut(name) {
-            cylinder.steps = cylinder.assigned.monitor()?;
-            cylinder.notes.begin_anew(reason);
-            cylinder.unsaved_since.get_or_insert(number);
-        }
-        self.outbox.push(publication::anew(&self.settings.prefix, name, reason));
-        Ok(())
-    }
-
-    /// Gives the files of a cylinder names that nothing reads.
-    fn set_aside(&self, name: &str) -> anyhow::Result<()> {
-        for file in self.files(name) {
-            if let Some(bytes) = read(&file)? {
-                let mut aside = file.clone().into_os_string();
-                aside.push(format!(".{}.aside", &Input::of("", &bytes).sha256[..12]));
-                std::fs::rename(&file, &aside)
-                    .with_context(|| format!("{} cannot be renamed", file.display()))?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Names of the cylinders whose states do not know all.
-    pub(super) fn unsaved(&self) -> Vec<String> {
-        let unsaved = self.cylinders.iter().filter(|(_, cylinder)| cylinder.unsaved_since.is_some());
-        unsaved.map(|(name, _)| name.clone()).collect()
-    }
-
-    /// Saves the state of a cylinder; `false`: it waits until its events have arrived.
-    pub(super) fn save(&mut self, name: &str) -> anyhow::Result<bool> {
-        let Some(cylinder) = self.cylinders.get(name).filter(|cylinder| cylinder.unsaved_since.is_some())
-        else {
-            return Ok(true);
-        };
-        if self.outbox.has_events(name) {
-            return Ok(false);
-        }
-        let [state, waiting] = self.files(name);
-        let (file, bytes) = match cylinder.steps.state_file()? {
-            Some(bytes) => (&state, bytes),
-            None => (&waiting, cylinder.steps.save()?),
-        };
-        let sha256 = Input::of("", &bytes).sha256;
-        self.journal.append(&[Entry::Saving { cylinder: name.to_owned(), sha256 }])?;
-        write_file(file, &bytes)?;
-        if *file == state && waiting.is_file() {
-            std::fs::remove_file(&waiting)
-                .with_context(|| format!("{} cannot be removed", waiting.display()))?;
-        }
-        if let Some(cylinder) = self.cylinders.get_mut(name) {
-            cylinder.unsaved_since = None;
-        }
-        self.status.states_saved.add();
-        Ok(true)
-    }
-
-    /// Begins a segment, and removes those that no state needs, but for the last of them: what is delivered again is known by it.
-    pub(super) fn turn_over(&mut self) -> anyhow::Result<()> {
-        let oldest = self.cylinders.values().filter_map(|cylinder| cylinder.unsaved_since).min();
-        let needed = oldest.unwrap_or(self.journal.number());
-        self.journal.remove_before(needed.saturating_sub(1))?;
-        self.journal.rotate()
     }
 
     /// Number of cylinders.
@@ -329,7 +217,17 @@ impl<'a> Keeper<'a> {
     }
 }
 
-fn read(file: &std::path::Path) -> anyhow::Result<Option<Vec<u8>>> {
+/// Gives a file, if it is there, a name that nothing reads.
+pub(super) fn set_aside(file: &Path) -> anyhow::Result<()> {
+    if let Some(bytes) = read(file)? {
+        let mut aside = file.to_owned().into_os_string();
+        aside.push(format!(".{}.aside", &Input::of("", &bytes).sha256[..12]));
+        std::fs::rename(file, &aside).with_context(|| format!("{} cannot be renamed", file.display()))?;
+    }
+    Ok(())
+}
+
+fn read(file: &Path) -> anyhow::Result<Option<Vec<u8>>> {
     match std::fs::read(file) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),

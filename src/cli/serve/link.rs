@@ -79,6 +79,17 @@ impl Client {
         Ok(())
     }
 
+    /// Ends subscriptions.
+    pub(super) fn unsubscribe(&self, filters: &[String]) -> anyhow::Result<()> {
+        for filter in filters {
+            match self {
+                Self::V4(client) => client.try_unsubscribe(filter)?,
+                Self::V5(client) => client.try_unsubscribe(filter)?,
+            }
+        }
+        Ok(())
+    }
+
     /// Publishes at quality of service 1.
     pub(super) fn publish(&self, topic: String, payload: String, retain: bool) -> anyhow::Result<()> {
         match self {

@@ -42,7 +42,9 @@ pub(super) struct Outbox {
 impl Outbox {
     /// Adds a message.
     pub(super) fn push(&mut self, message: Message) {
-        if message.retain {
+        if message.retain && message.payload.is_empty() {
+            self.kept.remove(&message.topic);
+        } else if message.retain {
             self.kept.insert(message.topic.clone(), message.payload.clone());
         }
         match &message.event_of {
@@ -59,6 +61,15 @@ impl Outbox {
         self.causes.extend(self.cause.map(|cause| (self.next, cause)));
         self.messages.insert(self.next, message);
         self.next += 1;
+    }
+
+    /// Lets the broker forget what it keeps below some levels: an empty message is kept as none.
+    pub(super) fn clear(&mut self, levels: &str) {
+        let topics: Vec<String> =
+            self.kept.keys().filter(|topic| topic.starts_with(levels)).cloned().collect();
+        for topic in topics {
+            self.push(Message { topic, payload: String::new(), retain: true, event_of: None });
+        }
     }
 
     /// The next message to send while fewer than `window` are on their way; it counts as handed to the link.

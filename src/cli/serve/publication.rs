@@ -26,10 +26,10 @@ pub(super) fn told(prefix: &str, name: &str, told: &Told) -> Message {
     Message { topic, payload: told.line.clone(), retain: alarm.is_some(), event_of: Some(name.to_owned()) }
 }
 
-/// That a monitor began anew.
-pub(super) fn anew(prefix: &str, name: &str, reason: &str) -> Message {
-    let id = digest(&format!("cold-start {name} {reason}"));
-    let payload = json!({ "id": id, "event": "cold-start", "reason": reason }).to_string();
+/// That a monitor began anew; the time is that of the last row before, s since 1970.
+pub(super) fn anew(prefix: &str, name: &str, reason: &str, time_s: f64) -> Message {
+    let id = digest(&format!("cold-start {name} {time_s} {reason}"));
+    let payload = json!({ "id": id, "event": "cold-start", "time_s": time_s, "reason": reason }).to_string();
     Message {
         topic: format!("{prefix}/{name}/event"),
         payload,

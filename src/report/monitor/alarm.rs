@@ -1,11 +1,15 @@
 //! Alarms: in words for people, and as lines of JSON with the names of OPC UA Part 9.
-use crate::detector::monitor::alarm::{AlarmEvent, AlarmName, Change, Condition};
+use crate::detector::monitor::alarm::{AlarmEvent, AlarmName, Change, Condition, Transition};
 use crate::report::Clock;
 use serde_json::json;
 
 /// A change of an alarm in words.
 pub(crate) fn alarm_text(event: &AlarmEvent, clock: &Clock) -> String {
-    let transition = &event.transition;
+    transition_text(event.alarm.as_str(), &event.transition, clock)
+}
+
+/// The same of any alarm, by its name.
+pub(crate) fn transition_text(alarm: &str, transition: &Transition, clock: &Clock) -> String {
     let condition = &transition.condition;
     let limit = condition.limit.map_or(String::new(), |limit| format!(" at {}", limit.as_str()));
     let what = match transition.change {
@@ -22,7 +26,7 @@ pub(crate) fn alarm_text(event: &AlarmEvent, clock: &Clock) -> String {
         Change::Enabled => "enabled".to_owned(),
         Change::Disabled => "disabled".to_owned(),
     };
-    format!("{}: alarm {} {what}", clock.text(transition.time_s), event.alarm.as_str())
+    format!("{}: alarm {alarm} {what}", clock.text(transition.time_s))
 }
 
 fn commented(what: &str, condition: &Condition) -> String {
@@ -31,14 +35,18 @@ fn commented(what: &str, condition: &Condition) -> String {
 
 /// A change of an alarm as one line of JSON, without its end.
 pub(crate) fn alarm_line(event: &AlarmEvent, clock: &Clock) -> String {
-    let transition = &event.transition;
+    transition_line(&event.id().to_string(), event.alarm.as_str(), &event.transition, clock)
+}
+
+/// The same of any alarm, by its identity and name.
+pub(crate) fn transition_line(id: &str, alarm: &str, transition: &Transition, clock: &Clock) -> String {
     let condition = &transition.condition;
     json!({
-        "id": event.id().to_string(),
+        "id": id,
         "event": "alarm",
         "time_s": clock.of_log_s(transition.time_s),
         "time": clock.date(transition.time_s),
-        "alarm": event.alarm.as_str(),
+        "alarm": alarm,
         "change": transition.change.as_str(),
         "Severity": condition.severity,
         "EnabledState": condition.enabled,

@@ -11,6 +11,8 @@ mod strip;
 mod summary;
 
 pub(crate) use alarm::{alarm_line, alarm_text};
+#[cfg(feature = "serve")]
+pub(crate) use alarm::{transition_line, transition_text};
 pub(crate) use event::{Naming, event_line, event_text, health_text, health_word};
 pub(crate) use figure::{FigureData, figure};
 pub(crate) use prognosis::{passage_text, reaction_reason, reaction_text, reaction_word};

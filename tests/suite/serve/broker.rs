@@ -60,8 +60,13 @@ impl Broker {
 
     /// Kills it and begins another one in its place, which knows nothing.
     pub(super) fn replace(&mut self, folder: &Path) {
+        self.pause(folder, Duration::from_millis(500));
+    }
+
+    /// The same after a time.
+    pub(super) fn pause(&mut self, folder: &Path, time: Duration) {
         self.process.kill();
-        std::thread::sleep(Duration::from_millis(500));
+        std::thread::sleep(time);
         self.process = broker(folder, self.port).unwrap();
     }
 }

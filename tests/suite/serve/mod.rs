@@ -1,7 +1,10 @@
 //! `cylwatch serve` beside a real broker: the events and states of `fleet`, through kills of either; bad configurations and bad messages.
 mod broker;
+mod hardship;
 mod http;
+mod load;
 mod refusals;
+mod reload;
 
 use crate::support::{program, run};
 use broker::{Broker, Heard, Process, listen, publish, wait};
@@ -28,18 +31,23 @@ fn time(minute: u32) -> String {
 
 /// Messages of some minutes: A and B have topics, C comes by the pattern.
 fn messages(minutes: std::ops::Range<u32>) -> Vec<(String, String)> {
+    messages_by(time, minutes)
+}
+
+/// The same by another clock.
+fn messages_by(clock: fn(u32) -> String, minutes: std::ops::Range<u32>) -> Vec<(String, String)> {
     let message = |name: &str, minute| {
         let [shoulder, valve, pressure] = readings(name, minute);
         let topic = if name == "C" { "depot/C/gas".to_owned() } else { format!("train/{name}") };
         let content =
-            format!("{{\"t\":\"{}\",\"p\":{pressure},\"temps\":[{shoulder},{valve}]}}", time(minute));
+            format!("{{\"t\":\"{}\",\"p\":{pressure},\"temps\":[{shoulder},{valve}]}}", clock(minute));
         (topic, content)
     };
     minutes.flat_map(|minute| NAMES.map(|name| message(name, minute))).collect()
 }
 
-/// A folder with what `fleet` makes of all rows.
-fn with_fleet() -> TempDir {
+/// A folder with what `fleet` makes of all rows, by a clock.
+fn with_fleet(clock: fn(u32) -> String) -> TempDir {
     let folder = tempdir().unwrap();
     let row = |name: &str| format!("{name},nitrogen-20l,200,15,yes\n");
     let vessels = NAMES.map(row).concat();
@@ -50,7 +58,7 @@ fn with_fleet() -> TempDir {
         let mut log = "time,shoulder_degc,valve_degc,pressure_bar\n".to_owned();
         for minute in 0..MINUTES {
             let [shoulder, valve, pressure] = readings(name, minute);
-            log.push_str(&format!("{},{shoulder},{valve},{pressure}\n", time(minute)));
+            log.push_str(&format!("{},{shoulder},{valve},{pressure}\n", clock(minute)));
         }
         std::fs::write(folder.path().join(format!("logs/{name}.csv")), log).unwrap();
     }
@@ -137,19 +145,22 @@ fn said(folder: &Path) -> String {
 
 /// Ends the gateway by a signal: exit code 0.
 fn end(mut gateway: Process, folder: &Path) {
-    let pid = gateway.0.id().to_string();
-    assert!(Command::new("kill").args(["-TERM", &pid]).status().unwrap().success());
+    signal(&gateway, "-TERM");
     assert_eq!(gateway.0.wait().unwrap().code(), Some(0), "{}", said(folder));
 }
 
 /// Waits until the estimate of a minute has been published of every cylinder.
 fn wait_for(minute: u32, heard: &Heard, folder: &Path) {
+    wait_until(&time(minute), heard, folder);
+}
+
+fn wait_until(time: &str, heard: &Heard, folder: &Path) {
     let is_there = |name: &str| {
         let topic = format!("cylwatch/{name}/estimate");
-        let time = format!("\"time\":\"{}\"", time(minute));
+        let time = format!("\"time\":\"{time}\"");
         heard.lock().unwrap().iter().any(|(of, payload, _)| *of == topic && payload.contains(&time))
     };
-    wait(&format!("minute {minute}: {}", said(folder)), || NAMES.iter().all(|name| is_there(name)));
+    wait(&format!("{time}: {}", said(folder)), || NAMES.iter().all(|name| is_there(name)));
 }
 
 fn assert_same_states(folder: &Path) {
@@ -157,6 +168,12 @@ fn assert_same_states(folder: &Path) {
         let state = |of: &str| std::fs::read(folder.join(format!("{of}/states/{name}.state"))).unwrap();
         assert!(state("fleet") == state("store"), "the state of {name} differs: {}", said(folder));
     }
+}
+
+/// Sends a signal to the gateway.
+fn signal(gateway: &Process, name: &str) {
+    let pid = gateway.0.id().to_string();
+    assert!(Command::new("kill").args([name, &pid]).status().unwrap().success());
 }
 
 /// Events and changes of alarms as they were heard, by cylinder.
@@ -183,10 +200,15 @@ fn assert_same_events(heard: &Heard, folder: &Path) {
 }
 
 fn begun(protocol: &str) -> Option<(TempDir, Broker, Heard)> {
+    begun_by(time, protocol)
+}
+
+/// The same by another clock.
+fn begun_by(clock: fn(u32) -> String, protocol: &str) -> Option<(TempDir, Broker, Heard)> {
     let folder = tempdir().unwrap();
     let broker = Broker::begin(folder.path())?;
     drop(folder);
-    let folder = with_fleet();
+    let folder = with_fleet(clock);
     std::fs::write(folder.path().join("gateway.toml"), configuration(broker.port, protocol)).unwrap();
     let heard = listen(broker.port, "listener");
     Some((folder, broker, heard))

@@ -20,6 +20,7 @@ fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
         ("client_id =", "password_env = \"NOT_THERE\"\nclient_id =", &["NOT_THERE"]),
         ("client_id =", "keep_alive_h = 30\nclient_id =", &["gateway.toml:6", "keep_alive_h", "30"]),
         ("save_every_s = 1", "save_every_s = 0", &["gateway.toml:9", "save_every_s", "between"]),
+        ("vessel =", "silent_after_min = 0\nvessel =", &["gateway.toml:12", "silent_after_min", "between"]),
         ("nitrogen-20l", "nitrogen-7l", &["nitrogen-7l"]),
         ("fill_pressure_bar = 200", "fill_pressure_l = 200", &["gateway.toml:13", "fill_pressure_l"]),
         ("fill_pressure_bar = 200", "fill_pressure_bar = -5", &["gateway.toml:1", "-5"]),

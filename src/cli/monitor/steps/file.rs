@@ -49,6 +49,13 @@ impl Steps {
         self.running.is_some()
     }
 
+    /// Time of the last row since 1970, s, where rows have dates.
+    pub(in crate::cli) fn last_row_s(&self) -> Option<f64> {
+        let running = self.running.as_ref()?;
+        let origin_s = running.origin?.as_nanosecond() as f64 * 1e-9;
+        Some(origin_s + running.last_stamp_s).filter(|time_s| time_s.is_finite())
+    }
+
     /// Acknowledges and confirms all alarms, as `--acknowledge` does.
     pub(in crate::cli) fn acknowledge(&mut self, comment: &str) -> Vec<Told> {
         let Some(Running { monitor, naming, .. }) = &mut self.running else { return Vec::new() };

@@ -5,6 +5,7 @@ use anyhow::bail;
 use std::time::Duration;
 
 /// How to reach the broker.
+#[derive(Clone, PartialEq)]
 pub(in crate::cli::serve) struct Broker {
     pub host: String,
     pub port: u16,

@@ -4,6 +4,7 @@ use crate::cli::serve::keeper::Delivered;
 use crate::cli::serve::link::Delivery;
 use crate::cli::serve::mapping::{Addressed, Refusal};
 use jiff::Timestamp;
+use std::sync::Arc;
 
 /// A message that is left out.
 pub(super) struct LeftOut {
@@ -22,7 +23,8 @@ impl LeftOut {
 impl Gateway<'_> {
     /// What a message is for and says, or why it is left out.
     pub(super) fn read(&mut self, delivery: &Delivery) -> Result<(String, Delivered), LeftOut> {
-        let mapping = &self.settings.mapping;
+        let settings = Arc::clone(&self.settings);
+        let mapping = &settings.mapping;
         match mapping.addressed(&delivery.topic) {
             None => Err(LeftOut::of("", Refusal::UnknownTopic)),
             Some(Addressed::Acknowledge(name)) if !self.keeper.knows(name) => {
@@ -55,7 +57,6 @@ impl Gateway<'_> {
         if delivery.again && self.keeper.recent.has(name, row.time_ns, &row.cells) {
             return Err(LeftOut::of(name, Refusal::Again));
         }
-        self.keeper.recent.note(name, row.time_ns, &row.cells);
         Ok((name.to_owned(), Delivered::Row(row)))
     }
 }

@@ -23,8 +23,9 @@ impl Keeper<'_> {
                 }
             }
         }
+        let settings = Arc::clone(&self.settings);
         for (name, entries) in by_cylinder {
-            match self.settings.named.get(&name).or(self.settings.by_pattern.as_ref()) {
+            match settings.named.get(&name).or(settings.by_pattern.as_ref()) {
                 Some(assigned) => self.replay_of(&name, assigned, entries)?,
                 None => self.messages.caution(&format!(
                     "{name} is in the journal and not in the configuration: its last rows wait in vain"
@@ -65,12 +66,10 @@ impl Keeper<'_> {
             match entry {
                 Entry::Row { time_ns, cells, .. } => {
                     // What was refused is refused again, and was said.
-                    _ = self.step(name, &names, time_ns, &cells)?;
+                    _ = self.step(name, &names, time_ns, &cells);
                 }
                 Entry::Acknowledged { comment, .. } => self.acknowledge(name, &comment),
-                Entry::Anew { reason, .. } => {
-                    self.outbox.push(publication::anew(&self.settings.prefix, name, &reason))
-                }
+                Entry::Anew { reason, time_s, .. } => self.tell_anew(name, &reason, time_s),
                 Entry::Saving { .. } | Entry::Readings(_) => {}
             }
         }

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 const SLICE: Duration = Duration::from_millis(5);
 
 /// What the page says beside the monitor.
+#[derive(Clone)]
 pub(super) struct Notes {
     /// Whether something has happened that the page does not have.
     is_new: bool,
@@ -36,6 +37,11 @@ impl Notes {
             events: 0,
             last_events: VecDeque::new(),
         }
+    }
+
+    /// Those of a monitor that goes on with other options.
+    pub(super) fn gone_on(&self) -> Self {
+        Self { is_new: true, goes_on: true, ..self.clone() }
     }
 
     /// A row came.

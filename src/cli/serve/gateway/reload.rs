@@ -1,0 +1,79 @@
+//! A configuration that changes while the gateway runs: taken over whole, or refused whole.
+//!
+//! It waits until the events of the cylinders that change have arrived, so that their states can be saved as they were; at most
+//! [`LONGEST_WAIT`], because the change may be what brings the broker back.
+use super::Gateway;
+use crate::cli::serve::config::{self, Broker, Settings};
+use crate::cli::serve::link::Link;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How long events may take to arrive.
+const LONGEST_WAIT: Duration = Duration::from_secs(10);
+
+/// A configuration that waits.
+pub(super) struct Reload {
+    settings: Arc<Settings>,
+    broker: Broker,
+    since: Instant,
+}
+
+impl Gateway<'_> {
+    /// Reads the configuration again.
+    pub(super) fn read_again(&mut self) {
+        match config::read(&self.path) {
+            Ok((settings, broker)) => {
+                self.reload = Some(Reload { settings: Arc::new(settings), broker, since: Instant::now() });
+            }
+            Err(error) => self.stays(&error),
+        }
+    }
+
+    /// Takes the configuration over as soon as it can be.
+    pub(super) fn take_over(&mut self) {
+        let Some(reload) = &self.reload else { return };
+        if !self.keeper.is_settled(&reload.settings) && reload.since.elapsed() < LONGEST_WAIT {
+            return;
+        }
+        let Some(Reload { settings, broker, .. }) = self.reload.take() else { return };
+        // What was delivered belongs to the configuration of before.
+        self.take();
+        match self.keeper.take_over(Arc::clone(&settings)) {
+            Ok(changes) => {
+                let before = std::mem::replace(&mut self.settings, settings);
+                self.connect_anew(&before, broker);
+                self.messages.say(&format!("the configuration is taken over: {changes}"));
+            }
+            Err(error) => self.stays(&error),
+        }
+    }
+
+    fn stays(&self, error: &anyhow::Error) {
+        self.messages.caution(&format!("the configuration stays as it was: {error:#}"));
+    }
+
+    /// Another broker, or other topics.
+    fn connect_anew(&mut self, before: &Settings, broker: Broker) {
+        if broker != self.broker {
+            if let Some(client) = self.client.take() {
+                client.disconnect();
+            }
+            self.drop_batch();
+            self.link = Link::new(broker.clone());
+            self.broker = broker;
+            return;
+        }
+        let (old, new) = (before.mapping.filters(), self.settings.mapping.filters());
+        let only = |one: &[String], other: &[String]| -> Vec<String> {
+            one.iter().filter(|filter| !other.contains(filter)).cloned().collect()
+        };
+        if let Some(client) = &self.client {
+            let changed =
+                client.unsubscribe(&only(&old, &new)).and_then(|()| client.subscribe(&only(&new, &old)));
+            if changed.is_err() {
+                // The next connection subscribes.
+                client.disconnect();
+            }
+        }
+    }
+}
