@@ -12,10 +12,13 @@
 //! | `gateway` | the loop |
 //! | `notify` | what the service manager hears |
 //! | `replay` | recorded logs, played to the broker |
+//! | `status` | what the loop tells of itself |
+//! | `http` | the page, metrics and health checks |
 mod alarms;
 mod config;
 mod document;
 mod gateway;
+mod http;
 mod journal;
 mod keeper;
 mod link;
@@ -28,14 +31,16 @@ mod replay;
 mod saver;
 mod signals;
 mod silence;
+mod status;
 
 use super::message::Messages;
+use crate::report::{Input, Provenance, quoted};
 use crate::thermal::document::schema;
 use clap::Args;
 use gateway::Gateway;
 use replay::{Replay, ReplayArguments};
 use serde_json::Value;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `serve`.
 #[derive(Debug, Args)]
@@ -52,13 +57,21 @@ pub(super) struct ServeArguments {
 
 /// Runs until a signal comes, or a replay has ended.
 pub(super) fn run(arguments: ServeArguments, messages: &Messages) -> anyhow::Result<()> {
-    let configuration = config::read(&arguments.config)?;
-    let replay = Replay::of(&arguments.replay, (&configuration.0, &configuration.1), messages)?;
+    let (mut settings, broker) = config::read(&arguments.config)?;
+    let replay = Replay::of(&arguments.replay, (&settings, &broker), messages)?;
     if arguments.check {
         messages.say(&format!("{} can be used", arguments.config.display()));
         return Ok(());
     }
-    Gateway::new(arguments.config, configuration, replay, messages)?.run()
+    let page = settings.page.take();
+    let listener = page.as_ref().map(http::bound).transpose()?;
+    let (journal, origin) = (settings.folder.join("journal"), provenance(&arguments.config)?);
+    let gateway = Gateway::new(arguments.config, (settings, broker), replay, messages)?;
+    if let (Some(page), Some(listener)) = (page, listener) {
+        messages.say(&format!("the page is at {}", page.address()));
+        http::serve(listener, http::Site::new(page, gateway.status(), journal, origin))?;
+    }
+    gateway.run()
 }
 
 /// JSON schema of configurations.
@@ -69,6 +82,13 @@ pub(super) fn configuration_schema() -> Value {
 /// JSON schema of `verdict`, `estimate`, `alarm` or `event`.
 pub(super) fn published_schema(what: &str) -> Value {
     publication::schema(what)
+}
+
+/// Where the page comes from.
+fn provenance(config: &Path) -> anyhow::Result<Provenance> {
+    let name = config.display().to_string();
+    let inputs = vec![Input::of(name.clone(), &std::fs::read(config)?)];
+    Ok(Provenance { command: format!("cylwatch serve {}", quoted(&name)), inputs, seed: None })
 }
 
 const HELP: &str = "\
@@ -95,6 +115,10 @@ has its time and its readings:
   [[payload.reading]]
   name = \"shoulder_degc\"
   at = \"/temperature\"
+
+A page of all cylinders, /metrics for Prometheus and /healthz, read-only:
+  [page]
+  listen = \"127.0.0.1:8742\"       # elsewhere token_file or token_env, tls_certificate_file, tls_key_file
 
 It publishes cylwatch/NAME/verdict, estimate and alarm/ALARM, which the broker keeps, and
 cylwatch/NAME/event, at quality of service 1. A comment to cylwatch/NAME/acknowledge acknowledges

@@ -1,11 +1,12 @@
 //! How a log is sampled: rows, usual interval, gaps, in memory that does not grow.
+use std::collections::BTreeMap;
 
 /// Buckets of the intervals' histogram; two neighbours differ by this factor.
 const FACTOR: f64 = 1.05;
 /// Shortest interval that has a bucket of its own, s.
 const SHORTEST_S: f64 = 1e-6;
 /// Buckets: up to 1e-6 s * 1.05^750 = 240 years.
-const BUCKETS: usize = 750;
+const BUCKETS: u16 = 750;
 /// An interval longer than this many usual ones is a gap.
 const GAP: f64 = 5.0;
 
@@ -15,7 +16,8 @@ pub struct Sampling {
     rows: u64,
     first_s: f64,
     last_s: f64,
-    histogram: Vec<Bucket>,
+    /// By their numbers; a log has few of them.
+    histogram: BTreeMap<u16, Bucket>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -38,13 +40,13 @@ pub struct Gaps {
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { rows: 0, first_s: f64::NAN, last_s: f64::NAN, histogram: vec![Bucket::default(); BUCKETS] }
+        Self { rows: 0, first_s: f64::NAN, last_s: f64::NAN, histogram: BTreeMap::new() }
     }
 }
 
 impl Sampling {
     /// Counts a row.
-    pub(super) fn push(&mut self, time_s: f64) {
+    pub(crate) fn push(&mut self, time_s: f64) {
         if self.rows == 0 {
             self.first_s = time_s;
         } else if time_s <= self.last_s {
@@ -54,7 +56,7 @@ impl Sampling {
         } else {
             let interval_s = time_s - self.last_s;
             let bucket = (interval_s / SHORTEST_S).max(1.0).ln() / FACTOR.ln();
-            let bucket = &mut self.histogram[(bucket as usize).min(BUCKETS - 1)];
+            let bucket = self.histogram.entry((bucket as u16).min(BUCKETS - 1)).or_default();
             bucket.count += 1;
             bucket.sum_s += interval_s;
             bucket.longest_s = bucket.longest_s.max(interval_s);
@@ -82,7 +84,7 @@ impl Sampling {
     pub fn usual_interval_s(&self) -> f64 {
         let half = self.rows.saturating_sub(1).div_ceil(2);
         let mut below = 0;
-        for bucket in self.histogram.iter().filter(|bucket| bucket.count > 0) {
+        for bucket in self.histogram.values() {
             below += bucket.count;
             if below >= half {
                 return bucket.sum_s / bucket.count as f64;
@@ -95,14 +97,14 @@ impl Sampling {
     pub fn gaps(&self) -> Gaps {
         let bound_s = GAP * self.usual_interval_s();
         let none = Gaps { count: 0, longest_s: 0.0, total_s: 0.0 };
-        self.histogram
-            .iter()
-            .filter(|bucket| bucket.count > 0 && bucket.sum_s / bucket.count as f64 > bound_s)
-            .fold(none, |gaps, bucket| Gaps {
+        self.histogram.values().filter(|bucket| bucket.sum_s / bucket.count as f64 > bound_s).fold(
+            none,
+            |gaps, bucket| Gaps {
                 count: gaps.count + bucket.count,
                 longest_s: gaps.longest_s.max(bucket.longest_s),
                 total_s: gaps.total_s + bucket.sum_s,
-            })
+            },
+        )
     }
 }
 

@@ -10,7 +10,7 @@ use super::{Provenance, ReportError};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Looks of all pages.
-const STYLE: &str = include_str!("page.css");
+pub(super) const STYLE: &str = include_str!("page.css");
 
 /// A page.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use crate::cli::monitor::{Course, Told};
 use crate::report::fleet::{Cylinder, Fault, Finding};
 
 /// Events that a cylinder's row keeps.
-const LAST_EVENTS: usize = 5;
+pub(in crate::cli) const LAST_EVENTS: usize = 5;
 
 /// What a cylinder comes to before it is put on record.
 #[derive(Default)]

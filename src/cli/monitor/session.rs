@@ -380,7 +380,7 @@ impl<'a> Session<'a> {
 }
 
 /// What became of rows that were not simply used, of this run alone.
-fn row_counts(now: &Counts, before: &Counts) -> RowCounts {
+pub(super) fn row_counts(now: &Counts, before: &Counts) -> RowCounts {
     RowCounts {
         duplicates: now.duplicates - before.duplicates,
         contradictions: now.contradictions - before.contradictions,

@@ -2,6 +2,8 @@
 #[cfg(feature = "serve")]
 mod file;
 mod out;
+mod running;
+mod seen;
 
 use super::course::{self, Told};
 use super::resume::RunStart;
@@ -20,6 +22,7 @@ pub(in crate::cli) use file::NotResumed;
 use jiff::Timestamp;
 use out::Out;
 pub use out::RowsWanted;
+use seen::Seen;
 use serde::{Deserialize, Serialize};
 
 /// A monitor that is fed row by row.
@@ -49,6 +52,7 @@ struct Running {
     settled: bool,
     stated: bool,
     last: Option<Output>,
+    seen: Seen,
 }
 
 /// What is saved.
@@ -246,52 +250,8 @@ impl Steps {
             settled: engine.settled,
             stated: engine.stated,
             last: None,
+            seen: Seen::default(),
             selection,
         }
-    }
-}
-
-impl Running {
-    fn push(&mut self, row: &Row) -> anyhow::Result<Vec<Output>> {
-        let readings: Vec<f64> = self.selection.readings(row).collect();
-        let outputs = self.monitor.step(row.time_s, &readings)?;
-        self.last_stamp_s = row.time_s;
-        Ok(outputs)
-    }
-
-    /// Adds outputs to what comes out.
-    fn tell(&mut self, outputs: Vec<Output>, out: &mut Out) -> anyhow::Result<()> {
-        for output in outputs {
-            self.naming.clock.note(output.estimate.time_s, output.stamp_s);
-            out.told.extend(course::told(&output, &self.naming));
-            if out.wanted == RowsWanted::Every {
-                self.keep(&output, out)?;
-            }
-            self.last = Some(output);
-        }
-        Ok(())
-    }
-
-    /// Adds an output as a row.
-    fn keep(&mut self, output: &Output, out: &mut Out) -> anyhow::Result<()> {
-        let leak_pa_s = output.estimate.leak_kg_s * self.slope.at(output.estimate.mass_kg)?;
-        out.rows.keep(&MonitorRow::new(output, leak_pa_s, &self.naming.clock), &mut out.table);
-        Ok(())
-    }
-
-    fn state(&self) -> anyhow::Result<State> {
-        Ok(State {
-            table: None,
-            identity: self.identity.clone(),
-            origin: self.origin.map(|origin| origin.to_string()),
-            clock: self.naming.clock.shown().clone(),
-            last_stamp_s: self.last_stamp_s,
-            log_starts_s: self.log_starts_s.clone(),
-            full_pa: self.full_pa,
-            settled: self.settled,
-            stated: self.stated,
-            last: self.last.clone(),
-            monitor: self.monitor.save()?,
-        })
     }
 }

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Somebody must look.
-const SEVERITY: u16 = 500;
+pub(super) const SEVERITY: u16 = 500;
 
 /// What the gateway raises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Silent => "silent",
             Self::StateLost => "state-lost",
@@ -87,6 +87,12 @@ impl Alarms {
     /// Whether an alarm was raised at this time, whatever has become of it.
     pub(super) fn is_known(&self, name: &str, kind: Kind, time_s: f64) -> bool {
         self.condition(name, kind).active_since_s == Some(time_s)
+    }
+
+    /// Names of the alarms of a cylinder that are active.
+    pub(super) fn active(&self, name: &str) -> Vec<&'static str> {
+        let kinds = [Kind::Silent, Kind::StateLost].into_iter();
+        kinds.filter(|kind| self.condition(name, *kind).active).map(Kind::name).collect()
     }
 
     /// Whether a row says that a cylinder is not silent, where it was or may have been.
@@ -206,6 +212,7 @@ mod tests {
         assert_eq!(alarms.told().collect::<Vec<_>>(), [("A", &raised[0])]);
         assert!(alarms.set("A", Kind::Silent, true, T_S).is_empty());
         assert!(alarms.must_clear("A") && !alarms.must_clear("B"));
+        assert!(alarms.active("A") == ["silent"] && alarms.active("B").is_empty());
         assert_eq!(
             ids(&alarms.set("A", Kind::Silent, false, T_S + 60.0)),
             ["alarm-silent-inactive-1767225660000"]

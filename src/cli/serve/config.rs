@@ -1,5 +1,8 @@
 //! Settings from the configuration, checked: whatever is wrong with it is told before the broker is called.
 mod broker;
+mod certificate;
+mod page;
+mod secret;
 
 use super::document::{Document, OptionsTable, TimeForm};
 use super::mapping::{Mapping, Pattern, Reading, has_filter, is_level};
@@ -11,6 +14,7 @@ use crate::thermal::ThermalError;
 use crate::thermal::document::{self, Places, check};
 use anyhow::{Context, anyhow, bail};
 pub(super) use broker::Broker;
+pub(super) use page::{Page, Token};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::OsString;
@@ -31,6 +35,8 @@ pub(super) struct Settings {
     pub prefix: String,
     /// Most cylinders.
     pub cylinders: usize,
+    /// `None`: nothing listens.
+    pub page: Option<Page>,
 }
 
 /// Without a row for so long a cylinder is silent, unless the configuration says otherwise, s.
@@ -73,6 +79,12 @@ impl Assigned {
         let files = files.iter().filter_map(|file| std::fs::read(file).ok());
         let files = files.map(|bytes| Input::of("", &bytes).sha256).collect();
         Ok(Self { call, files, silent_after })
+    }
+
+    /// The vessel as it is named, without its folder.
+    pub(super) fn vessel(&self) -> String {
+        let name = self.call.get(1).and_then(|vessel| Path::new(vessel).file_name());
+        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
     }
 
     /// A monitor that has not begun.
@@ -263,6 +275,7 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
         by_pattern,
         prefix,
         cylinders: limit,
+        page: document.page.as_ref().map(|table| checked.page(table)).transpose()?,
     })
 }
 

@@ -18,6 +18,7 @@ pub(super) struct Document {
     pub publish: PublishTable,
     #[serde(default)]
     pub limits: LimitsTable,
+    pub page: Option<PageTable>,
 }
 
 /// The broker.
@@ -147,4 +148,19 @@ pub(super) struct PublishTable {
 pub(super) struct LimitsTable {
     pub message_bytes: Option<u32>,
     pub cylinders: Option<u32>,
+}
+
+/// Where the page listens.
+#[derive(Deserialize, JsonSchema)]
+pub(super) struct PageTable {
+    /// Address and port.
+    pub listen: String,
+    /// Refused, whatever it holds.
+    #[schemars(skip)]
+    pub token: Option<IgnoredAny>,
+    pub token_file: Option<String>,
+    pub token_env: Option<String>,
+    pub tls_certificate_file: Option<String>,
+    pub tls_key_file: Option<String>,
+    pub host_names: Option<Vec<String>>,
 }

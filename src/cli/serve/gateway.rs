@@ -3,6 +3,7 @@ mod batch;
 mod reception;
 mod reload;
 mod saving;
+mod turn;
 
 use super::config::{Broker, Settings};
 use super::keeper::Keeper;
@@ -16,7 +17,7 @@ use crate::cli::message::Messages;
 use batch::Batch;
 use reload::Reload;
 use saving::Saving;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -45,7 +46,6 @@ pub(super) struct Gateway<'a> {
     /// Subscriptions that the broker has not answered.
     subscribing: usize,
     batch: Batch,
-    refusals: BTreeMap<Refusal, u64>,
     /// What was said of cylinders.
     said: BTreeSet<(String, Refusal)>,
     /// Why there is no connection, as it was said.
@@ -80,7 +80,6 @@ impl<'a> Gateway<'a> {
             client: None,
             subscribing: 0,
             batch: Batch::default(),
-            refusals: BTreeMap::new(),
             said: BTreeSet::new(),
             down: None,
             reload: None,
@@ -94,7 +93,8 @@ impl<'a> Gateway<'a> {
         self.notify.ready();
         while !self.signals.end() && self.replay_goes_on()? {
             self.notify.turned();
-            self.listen(PATIENCE);
+            let patience = self.turn();
+            self.listen(patience);
             self.begin_anew();
             self.look_for_silence();
             self.save_some();
@@ -191,7 +191,7 @@ impl<'a> Gateway<'a> {
 
     /// Counts a message that is left out; says so once of a cylinder and a reason.
     fn refuse(&mut self, name: &str, refusal: Refusal, reason: &str) {
-        *self.refusals.entry(refusal).or_default() += 1;
+        self.keeper.status.refused(refusal);
         if refusal != Refusal::Again && self.said.insert((name.to_owned(), refusal)) {
             let whose = if name.is_empty() { String::new() } else { format!("{name}: ") };
             self.messages
@@ -209,6 +209,9 @@ impl<'a> Gateway<'a> {
                 client.disconnect();
                 self.client = None;
                 return;
+            }
+            if let Some(since) = self.keeper.outbox.since() {
+                self.keeper.status.publish.observe(since.elapsed());
             }
         }
     }
@@ -234,10 +237,12 @@ impl<'a> Gateway<'a> {
             // Its thread sends what it has.
             while !matches!(self.link.next(PATIENCE), None | Some(FromBroker::Down(_))) {}
         }
+        let left_out = self.keeper.status.refusals().into_iter().filter(|(_, count)| *count > 0);
         let left_out: Vec<String> =
-            self.refusals.iter().map(|(refusal, count)| format!("{} ({count})", refusal.words())).collect();
+            left_out.map(|(refusal, count)| format!("{} ({count})", refusal.words())).collect();
         let why = if self.signals.end() { "stopped by a signal" } else { "the replay has ended" };
-        let mut words = format!("{why}: {} rows of {} cylinders", self.keeper.rows, self.keeper.len());
+        let rows = self.keeper.status.rows.count();
+        let mut words = format!("{why}: {rows} rows of {} cylinders", self.keeper.len());
         if !left_out.is_empty() {
             words.push_str(&format!("; messages left out: {}", left_out.join(", ")));
         }

@@ -12,10 +12,12 @@
 //! A state that is damaged, and one of a monitor that failed, is set aside under another name, and the monitor begins anew; that is an event.
 mod anew;
 mod own;
+mod pattern;
 mod reload;
 mod replay;
 mod rows;
 mod saving;
+mod show;
 #[cfg(test)]
 mod tests;
 
@@ -28,6 +30,7 @@ use super::publication;
 use super::recent::Recent;
 use super::saver::Saver;
 use super::silence::Silence;
+use super::status::Status;
 use crate::cli::StepTime;
 use crate::cli::fleet::{locked, stem};
 use crate::cli::message::Messages;
@@ -35,6 +38,7 @@ use crate::cli::monitor::{NotResumed, Steps, Told};
 use crate::cli::output::{make_folder, remove_orphans};
 use crate::report::Input;
 use anyhow::{Context, bail};
+use show::{Notes, Showing};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -53,6 +57,7 @@ struct Cylinder {
     saving_since: Option<u64>,
     /// Why its monitor has failed, until it has begun anew.
     failed: Option<String>,
+    notes: Notes,
 }
 
 /// What goes to a monitor.
@@ -70,6 +75,8 @@ pub(super) struct Keeper<'a> {
     cylinders: BTreeMap<String, Cylinder>,
     /// Cylinders that came by the pattern.
     by_pattern: usize,
+    /// Their names on disk.
+    noted: Vec<String>,
     /// Cylinders whose monitors have failed.
     failed: BTreeSet<String>,
     alarms: Alarms,
@@ -79,8 +86,8 @@ pub(super) struct Keeper<'a> {
     pub outbox: Outbox,
     pub recent: Recent,
     saver: Saver,
-    /// Rows that were taken in.
-    pub rows: u64,
+    pub status: Arc<Status>,
+    showing: Showing,
     _lock: File,
 }
 
@@ -103,6 +110,7 @@ impl<'a> Keeper<'a> {
         }
         let mut keeper = Self {
             by_pattern: 0,
+            noted: Vec::new(),
             failed: BTreeSet::new(),
             own: alarms.told().map(|(name, told)| (name.to_owned(), told.clone())).collect(),
             alarms,
@@ -115,13 +123,15 @@ impl<'a> Keeper<'a> {
             outbox: Outbox::default(),
             recent: Recent::default(),
             saver: Saver::new(),
-            rows: 0,
+            status: Arc::default(),
+            showing: Showing::default(),
             _lock: lock,
         };
         keeper.replay(segments)?;
         for (name, assigned) in &settings.named {
             keeper.know(name, assigned)?;
         }
+        keeper.take_up_noted()?;
         keeper.begin_failed_anew()?;
         keeper.publish_alarms()?;
         Ok(keeper)
@@ -183,9 +193,11 @@ impl<'a> Keeper<'a> {
         };
         self.by_pattern += usize::from(!self.settings.named.contains_key(name));
         self.silence.watch(name, assigned.silent_after, Instant::now());
+        let notes = Notes::of(&steps);
         self.cylinders.insert(
             name.to_owned(),
             Cylinder {
+                notes,
                 assigned: assigned.clone(),
                 steps,
                 unsaved_since: None,

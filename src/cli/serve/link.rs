@@ -8,7 +8,7 @@ use rumqttc::v5::mqttbytes::v5::{
 };
 use rumqttc::{Outgoing, SubscribeFilter, SubscribeReasonCode, v5};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Messages of the broker that wait at most; then it is not listened to.
 const WAITING: usize = 1024;
@@ -48,6 +48,7 @@ pub(super) struct Delivery {
     pub payload: Vec<u8>,
     /// Whether it may have been delivered before: once more, or as what the broker keeps.
     pub again: bool,
+    pub arrived: Instant,
     receipt: Receipt,
 }
 
@@ -170,6 +171,7 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                     topic: publish.topic.clone(),
                     payload: publish.payload.to_vec(),
                     again: publish.dup || publish.retain,
+                    arrived: Instant::now(),
                     receipt: Receipt::V4(rumqttc::Publish { payload: Vec::new().into(), ..publish }),
                 })),
                 rumqttc::Packet::SubAck(ack) => {
@@ -210,6 +212,7 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                     topic: String::from_utf8_lossy(&publish.topic).into_owned(),
                     payload: publish.payload.to_vec(),
                     again: publish.dup || publish.retain,
+                    arrived: Instant::now(),
                     receipt: Receipt::V5(v5::mqttbytes::v5::Publish {
                         payload: Vec::new().into(),
                         ..publish

@@ -3,6 +3,7 @@
 //! Events keep their order and are never left out. Of verdict and estimate the newest waits alone: an older one would be replaced at the broker
 //! at once.
 use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
+use std::time::Instant;
 
 /// A message to the broker.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +33,10 @@ pub(super) struct Outbox {
     kept: BTreeMap<String, String>,
     /// Events that have not arrived, by cylinder.
     events: HashMap<String, usize>,
+    /// When the message came that leads to what is pushed now.
+    pub cause: Option<Instant>,
+    /// The same of messages that were not handed to the link.
+    causes: BTreeMap<u64, Instant>,
 }
 
 impl Outbox {
@@ -53,6 +58,7 @@ impl Outbox {
             }
         }
         self.waiting.insert(self.next);
+        self.causes.extend(self.cause.map(|cause| (self.next, cause)));
         self.messages.insert(self.next, message);
         self.next += 1;
     }
@@ -78,6 +84,11 @@ impl Outbox {
         }
         self.handed.push_back(number);
         Some(message)
+    }
+
+    /// When the message came that led to the last that was handed; `None`: it was handed before.
+    pub(super) fn since(&mut self) -> Option<Instant> {
+        self.causes.remove(self.handed.back()?)
     }
 
     /// The first of the handed messages went out in a packet.

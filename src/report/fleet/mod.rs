@@ -1,6 +1,8 @@
 //! Many cylinders: a row each with the most urgent first, what happened, what could not be read, and a page.
 //!
 //! [`Cylinder`] is what is left of a cylinder when its log has gone: numbers as the monitor gave them, SI.
+#[cfg(feature = "serve")]
+mod live;
 mod order;
 mod page;
 mod row;
@@ -8,6 +10,8 @@ mod tables;
 mod trace;
 mod words;
 
+#[cfg(feature = "serve")]
+pub(crate) use live::{live_page, live_policy, live_row};
 pub(crate) use order::sort_by_urgency;
 pub(crate) use page::page;
 pub(crate) use row::{Cylinder, Fault, Finding, Source};

@@ -75,16 +75,16 @@ fn left_s(found: &Finding) -> f64 {
     }
 }
 
+/// What urgency goes by before the name, the lowest first; infinite: beyond the horizon or not known.
+pub(super) fn key(one: &Cylinder) -> [f64; 4] {
+    let left_s = one.found.as_ref().map_or(f64::INFINITY, left_s);
+    let probability = one.found.as_ref().and_then(|found| found.leak_probability).unwrap_or(0.0);
+    [-f64::from(one.rank()), -f64::from(one.severity()), left_s, -probability]
+}
+
 fn compare(a: &Cylinder, b: &Cylinder) -> Ordering {
-    let time = |one: &Cylinder| one.found.as_ref().map_or(f64::INFINITY, left_s);
-    let probability =
-        |one: &Cylinder| one.found.as_ref().and_then(|found| found.leak_probability).unwrap_or(0.0);
-    b.rank()
-        .cmp(&a.rank())
-        .then_with(|| b.severity().cmp(&a.severity()))
-        .then_with(|| time(a).total_cmp(&time(b)))
-        .then_with(|| probability(b).total_cmp(&probability(a)))
-        .then_with(|| a.name.cmp(&b.name))
+    let by_key = key(a).into_iter().zip(key(b)).map(|(a, b)| a.total_cmp(&b));
+    by_key.fold(Ordering::Equal, Ordering::then).then_with(|| a.name.cmp(&b.name))
 }
 
 /// Puts the most urgent first.

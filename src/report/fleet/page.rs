@@ -11,8 +11,8 @@ use crate::thermal::units::BAR_PA;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
-const SCRIPT: &str = include_str!("page.js");
-const OWN_STYLE: &str = include_str!("page.css");
+pub(super) const SCRIPT: &str = include_str!("page.js");
+pub(super) const OWN_STYLE: &str = include_str!("page.css");
 /// Nothing is loaded from anywhere.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 /// Rows of the page without scripts.
@@ -33,24 +33,52 @@ const HEADS: [&str; 9] = [
     "pressure at 15 °C",
 ];
 
+/// What a page has that others have not.
+pub(super) struct Own {
+    /// What a browser may load and run.
+    pub policy: String,
+    /// Styles after those of all pages.
+    pub style: String,
+    /// What stands above the cylinders.
+    pub top: Markup,
+    /// What the script draws.
+    pub data: Value,
+    pub script: String,
+}
+
 /// The page, its cylinders sorted by urgency.
 pub(crate) fn page(cylinders: &[Cylinder], faults: &[Fault], provenance: &Provenance) -> String {
+    let own = Own {
+        policy: POLICY.to_owned(),
+        style: OWN_STYLE.to_owned(),
+        top: html! {},
+        data: data(cylinders.iter().map(row).collect()),
+        script: SCRIPT.to_owned(),
+    };
+    whole(cylinders, faults, provenance, &own)
+}
+
+/// A page with what is its own.
+pub(super) fn whole(cylinders: &[Cylinder], faults: &[Fault], provenance: &Provenance, own: &Own) -> String {
     let title = match cylinders {
         [_] => "Fleet of 1 cylinder".to_owned(),
         many => format!("Fleet of {} cylinders", many.len()),
     };
-    let own = html! {
-        meta http-equiv="Content-Security-Policy" content=(POLICY);
-        style { (PreEscaped(OWN_STYLE)) }
+    let in_head = html! {
+        meta http-equiv="Content-Security-Policy" content=(own.policy);
+        style { (PreEscaped(&own.style)) }
     };
+    // Nothing in the data ends its element.
+    let data = own.data.to_string().replace('<', "\\u003c");
     let heads = html! { thead { tr { @for head in HEADS { th scope="col" { (head) } } } } };
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            (head(&title, &own))
+            (head(&title, &in_head))
             body {
                 (banner(&title))
                 main {
+                    (own.top)
                     (lights(cylinders))
                     input #find .find .script type="search" placeholder="Search: name, verdict, sensor \u{2026}" aria-label="Search";
                     p.remark {
@@ -66,8 +94,8 @@ pub(crate) fn page(cylinders: &[Cylinder], faults: &[Fault], provenance: &Proven
                     (meaning())
                 }
                 (origin(provenance))
-                script #data type="application/json" { (PreEscaped(data(cylinders))) }
-                script { (PreEscaped(SCRIPT)) }
+                script #data type="application/json" { (PreEscaped(data)) }
+                script { (PreEscaped(&own.script)) }
             }
         }
     };
@@ -105,13 +133,13 @@ fn cells(one: &Cylinder) -> [String; 6] {
     [verdict, pressure, lost, left, due, sensors]
 }
 
-/// What the script draws. `<` is written as an escape: nothing in it ends the element.
-fn data(cylinders: &[Cylinder]) -> String {
-    let rows: Vec<Value> = cylinders.iter().map(row).collect();
-    json!({ "lights": Light::ALL.map(Light::word), "rows": rows }).to_string().replace('<', "\\u003c")
+/// What the script draws.
+pub(super) fn data(rows: Vec<Value>) -> Value {
+    json!({ "lights": Light::ALL.map(Light::word), "rows": rows })
 }
 
-fn row(one: &Cylinder) -> Value {
+/// A cylinder for the script.
+pub(super) fn row(one: &Cylinder) -> Value {
     let light = Light::ALL.iter().position(|light| *light == one.light());
     let bar = |pressure_pa: f64| (pressure_pa / BAR_PA * 100.0).round() / 100.0;
     let course: Vec<Option<f64>> = one

@@ -53,6 +53,11 @@ impl Broker {
         Some(Self { port, process })
     }
 
+    /// Kills it.
+    pub(super) fn kill(&mut self) {
+        self.process.kill();
+    }
+
     /// Kills it and begins another one in its place, which knows nothing.
     pub(super) fn replace(&mut self, folder: &Path) {
         self.pause(folder, Duration::from_millis(500));

@@ -7,6 +7,9 @@ use tempfile::tempdir;
 fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
     let folder = tempdir().unwrap();
     let check = ["serve", "gateway.toml", "--check"];
+    for (name, token) in [("long", "correct-horse-battery-staple"), ("short", "sesame")] {
+        std::fs::write(folder.path().join(name), token).unwrap();
+    }
     let right = configuration(1883, "5");
     std::fs::write(folder.path().join("gateway.toml"), &right).unwrap();
     assert_eq!(run(folder.path(), &check).code, Some(0));
@@ -30,6 +33,46 @@ fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
         ("time = \"/t\"\n", "", &["payload time", "arrival"]),
         ("/temps/0", "temps/0", &["gateway.toml:36", "begin it with /"]),
         ("pressure_bar\"", "pressure_l\"", &["pressure_l"]),
+        (
+            "[payload]",
+            "[page]\nlisten = \"localhost\"\n[payload]",
+            &["gateway.toml:33", "localhost", "127.0.0.1:8742"],
+        ),
+        (
+            "[payload]",
+            "[page]\nlisten = \"0.0.0.0:8742\"\n[payload]",
+            &["gateway.toml:33", "0.0.0.0", "a token and TLS"],
+        ),
+        (
+            "[payload]",
+            "[page]\nlisten = \"10.0.0.1:1\"\ntoken_file = \"long\"\n[payload]",
+            &["gateway.toml:33", "10.0.0.1", "a token and TLS"],
+        ),
+        (
+            "[payload]",
+            "[page]\nlisten = \"127.0.0.1:1\"\ntoken = \"sesame\"\n[payload]",
+            &["gateway.toml:34", "token_file"],
+        ),
+        (
+            "[payload]",
+            "[page]\nlisten = \"127.0.0.1:1\"\ntoken_file = \"short\"\n[payload]",
+            &["gateway.toml:32", "shorter than 16"],
+        ),
+        (
+            "[payload]",
+            "[page]\nlisten = \"127.0.0.1:1\"\ntoken_file = \"nowhere\"\n[payload]",
+            &["gateway.toml:34", "nowhere", "cannot be read"],
+        ),
+        (
+            "[payload]",
+            "[page]\nlisten = \"127.0.0.1:1\"\ntls_key_file = \"gateway.toml\"\n[payload]",
+            &["gateway.toml:32", "both or none"],
+        ),
+        (
+            "[payload]",
+            "[page]\nlisten = \"127.0.0.1:1\"\ntls_key_file = \"gateway.toml\"\ntls_certificate_file = \"gateway.toml\"\n[payload]",
+            &["gateway.toml:35", "not usable"],
+        ),
     ] {
         let wrong = right.replacen(from, to, 1);
         assert_ne!(wrong, right, "{from}");

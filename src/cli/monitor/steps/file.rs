@@ -1,6 +1,10 @@
 //! What a program needs that keeps state files itself: a check of readings before there are rows, going on from a file,
-//! and acknowledgements.
+//! acknowledgements, and what the page of a fleet says.
 use super::*;
+use crate::cli::monitor::session::row_counts;
+use crate::detector::monitor::intake::Counts;
+use crate::report::fleet::Finding;
+use crate::report::monitor::Summary;
 
 /// A time of rows that have dates.
 const DATES: StepTime = StepTime::Instant(0, String::new());
@@ -56,5 +60,36 @@ impl Steps {
     pub(in crate::cli) fn acknowledge(&mut self, comment: &str) -> Vec<Told> {
         let Some(Running { monitor, naming, .. }) = &mut self.running else { return Vec::new() };
         monitor.acknowledge(comment).iter().map(|alarm| course::told_alarm(alarm, naming)).collect()
+    }
+
+    /// What the page of a fleet says of the cylinder; `None`: no row has come out yet. The course is that since the start; of a monitor that
+    /// goes on from a state its first row is that of the state.
+    pub(in crate::cli) fn finding(&self) -> Option<Finding> {
+        self.running.as_ref()?.finding(&self.options)
+    }
+}
+
+impl Running {
+    fn finding(&self, options: &Options) -> Option<Finding> {
+        let counts = self.monitor.intake().counts();
+        let clock = &self.naming.clock;
+        let run = Summary {
+            title: String::new(),
+            sampling: self.seen.sampling.clone(),
+            cautions: Vec::new(),
+            naming: self.naming.clone(),
+            last: self.last.clone()?,
+            alarms: self.monitor.alarms().clone(),
+            limits: options.limits,
+            known_rows: 0,
+            held_rows: self.monitor.intake().held() as u64,
+            row_counts: row_counts(counts, &Counts::default()),
+            loss_found: self.seen.loss_found,
+            continued: counts.rows > self.seen.sampling.rows(),
+        };
+        let found = Finding::of(&run, self.seen.trace.means());
+        let span_s = (self.log_starts_s.first().copied().unwrap_or(f64::NAN), self.last_stamp_s);
+        let date = |time_s: f64| clock.date_of_log(time_s).unwrap_or_default();
+        Some(Finding { rows: counts.rows, span_s, span: (date(span_s.0), date(span_s.1)), ..found })
     }
 }

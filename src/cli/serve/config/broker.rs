@@ -1,7 +1,7 @@
 //! How to reach the broker; passwords come from a file or the environment alone.
 use super::Checked;
 use crate::cli::serve::document::{BrokerTable, Protocol};
-use anyhow::{Context, anyhow, bail};
+use anyhow::bail;
 use std::time::Duration;
 
 /// How to reach the broker.
@@ -34,23 +34,8 @@ impl Checked<'_> {
                 "the broker keeps messages for it while the gateway is away",
             )?;
         }
-        let password = match (&table.password_file, &table.password_env) {
-            (Some(_), Some(_)) => {
-                bail!("{}: give password_file or password_env, not both", self.at("broker.password_env"))
-            }
-            (Some(file), None) => {
-                let path = self.folder.join(file);
-                let text = std::fs::read_to_string(&path);
-                let text = text.with_context(|| {
-                    format!("{}: {} cannot be read", self.at("broker.password_file"), path.display())
-                })?;
-                Some(text.trim_end_matches(['\r', '\n']).to_owned())
-            }
-            (None, Some(name)) => Some(std::env::var(name).map_err(|_| {
-                anyhow!("{}: the environment has no text in {name}: set it", self.at("broker.password_env"))
-            })?),
-            (None, None) => None,
-        };
+        let (file, variable) = (table.password_file.as_deref(), table.password_env.as_deref());
+        let password = self.secret("broker.password", file, variable)?;
         let login = match (table.user, password) {
             (None, Some(_)) => bail!("{}: a password needs a user: add user", self.at("broker")),
             (user, password) => user.map(|user| (user, password.unwrap_or_default())),

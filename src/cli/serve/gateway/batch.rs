@@ -53,6 +53,7 @@ impl Gateway<'_> {
             // A receipt that does not go out costs one more delivery, which is known.
             deliveries.iter().for_each(|delivery| _ = client.acknowledge(delivery));
         }
+        self.keeper.outbox.cause = deliveries.iter().map(|delivery| delivery.arrived).min();
         for (name, input) in inputs {
             if let Err((refusal, reason)) = self.keeper.take(&name, input) {
                 self.refuse(&name, refusal, &reason);

@@ -32,6 +32,11 @@ pub(super) enum Written {
 }
 
 impl Saving {
+    /// Whether all could be written the last time.
+    pub(super) fn is_written(&self) -> bool {
+        self.unwritten.is_empty()
+    }
+
     pub(super) fn new(every: Duration) -> Self {
         let now = Instant::now();
         Self {

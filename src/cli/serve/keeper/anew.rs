@@ -24,6 +24,7 @@ impl Keeper<'_> {
         if let Some(cylinder) = self.cylinders.get_mut(name) {
             cylinder.steps = cylinder.assigned.monitor()?;
             cylinder.failed = None;
+            cylinder.notes.begin_anew(&reason);
             cylinder.unsaved_since.get_or_insert(number);
         }
         self.tell_anew(name, &reason, time_s);

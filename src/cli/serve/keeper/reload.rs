@@ -108,6 +108,7 @@ impl Keeper<'_> {
             unsaved_since: Some(cylinder.unsaved_since.unwrap_or(self.journal.number())),
             saving_since: None,
             failed: cylinder.failed.clone(),
+            notes: cylinder.notes.gone_on(),
         })))
     }
 

@@ -20,7 +20,10 @@ impl Keeper<'_> {
                 Entry::Acknowledged { cylinder: name.clone(), comment: comment.clone() }
             }
         };
-        self.journal.append(&inputs.iter().map(entry).collect::<Vec<_>>())
+        let begin = Instant::now();
+        self.journal.append(&inputs.iter().map(entry).collect::<Vec<_>>())?;
+        self.status.journal.observe(begin.elapsed());
+        Ok(())
     }
 
     /// Gives what was recorded to its monitor.
@@ -35,14 +38,16 @@ impl Keeper<'_> {
         }
         match input {
             Delivered::Row(Accepted { time_ns, cells }) => {
-                self.rows += 1;
+                self.status.row(time_ns);
                 self.recent.note(name, time_ns, &cells);
                 self.silence.heard(name, Instant::now());
                 if self.alarms.must_clear(name) {
                     self.set_alarm(name, Kind::Silent, false, time_ns as f64 * 1e-9);
                 }
-                let names = self.names.clone();
-                self.step(name, &names, time_ns, &cells)
+                let (names, begin) = (self.names.clone(), Instant::now());
+                let stepped = self.step(name, &names, time_ns, &cells);
+                self.status.step.observe(begin.elapsed());
+                stepped
             }
             Delivered::Acknowledge(comment) => {
                 self.acknowledge(name, &comment);
@@ -65,6 +70,7 @@ impl Keeper<'_> {
         let readings: Vec<(&str, f64)> =
             names.iter().map(String::as_str).zip(cells.iter().copied()).collect();
         let had_begun = cylinder.steps.has_begun();
+        cylinder.notes.hear();
         match cylinder.steps.step(StepTime::Instant(time_ns, ZONE.to_owned()), &readings) {
             Ok((table, told)) => {
                 self.tell(name, &told);
@@ -94,6 +100,9 @@ impl Keeper<'_> {
         for one in told {
             self.messages.say(&format!("{name}: {}", one.words));
             self.outbox.push(publication::told(&self.settings.prefix, name, one));
+            if let Some(cylinder) = self.cylinders.get_mut(name) {
+                cylinder.notes.tell(&one.words);
+            }
         }
     }
 }

@@ -11,6 +11,7 @@ impl Keeper<'_> {
 
     /// Begins to save the states of some cylinders, but for those whose events have not arrived or whose state is being written.
     pub(in crate::cli::serve) fn save(&mut self, names: &[String]) -> anyhow::Result<()> {
+        self.note_names()?;
         let (mut entries, mut jobs) = (Vec::new(), Vec::new());
         for name in names {
             let Some(cylinder) = self.cylinders.get(name) else { continue };
@@ -50,6 +51,8 @@ impl Keeper<'_> {
         while let Some((name, written)) = self.saver.done() {
             if let Some(cylinder) = self.cylinders.get_mut(&name) {
                 let since = cylinder.saving_since.take();
+                let status = &self.status;
+                if written.is_ok() { &status.states_saved } else { &status.states_failed }.add();
                 if written.is_err() {
                     cylinder.unsaved_since = since.or(cylinder.unsaved_since);
                 }

@@ -1,0 +1,32 @@
+//! Refusals as a label has them.
+use crate::cli::serve::mapping::Refusal;
+
+impl Refusal {
+    /// Those that have a count from the start.
+    pub(in crate::cli::serve) const ALL: [Self; 9] = [
+        Self::UnknownTopic,
+        Self::TooManyCylinders,
+        Self::TooLarge,
+        Self::NoJson,
+        Self::NoTime,
+        Self::NoNumber,
+        Self::NoReading,
+        Self::Monitor,
+        Self::Again,
+    ];
+
+    /// Value of the label `reason`.
+    pub(in crate::cli::serve) fn label(self) -> &'static str {
+        match self {
+            Self::UnknownTopic => "unknown_topic",
+            Self::TooManyCylinders => "too_many_cylinders",
+            Self::TooLarge => "too_large",
+            Self::NoJson => "no_json",
+            Self::NoTime => "no_time",
+            Self::NoNumber => "no_number",
+            Self::NoReading => "no_reading",
+            Self::Monitor => "monitor",
+            Self::Again => "again",
+        }
+    }
+}
