@@ -193,6 +193,27 @@ pub(super) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Writes some files, each so that it appears complete or not at all. They are on disk together, which takes hardly longer than one.
+#[cfg(feature = "serve")]
+pub(super) fn write_files(files: &[(&Path, &[u8])]) -> Vec<anyhow::Result<()>> {
+    let begun: Vec<_> = files
+        .iter()
+        .map(|(path, bytes)| {
+            let mut file = temporary(folder_of(path))?;
+            file.write_all(bytes)?;
+            Ok(file)
+        })
+        .collect();
+    let persist = |(begun, (path, _)): (std::io::Result<NamedTempFile>, &(&Path, &[u8]))| {
+        let persisted = begun.and_then(|file| {
+            file.as_file().sync_all()?;
+            file.persist(path).map_err(|error| error.error)
+        });
+        persisted.map(|_| ()).with_context(|| format!("{} cannot be written", path.display()))
+    };
+    begun.into_iter().zip(files).map(persist).collect()
+}
+
 /// Writes a file that is not there yet, complete or not at all.
 pub(super) fn write_new_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let failed = || format!("{} cannot be written", path.display());

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `document`, `config` | the configuration, as written and checked |
 //! | `mapping` | a message becomes a row of a cylinder |
-//! | `journal`, `keeper`, `recent` | rows and states on disk; what is guaranteed stands in `keeper` |
+//! | `journal`, `keeper`, `saver`, `recent` | rows and states on disk; what is guaranteed stands in `keeper` |
 //! | `silence`, `alarms` | cylinders that send nothing, and the gateway's own alarms |
 //! | `publication`, `outbox` | what is published, and what has not arrived |
 //! | `link` | the broker |
@@ -25,6 +25,7 @@ mod outbox;
 mod publication;
 mod recent;
 mod replay;
+mod saver;
 mod signals;
 mod silence;
 

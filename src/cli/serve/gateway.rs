@@ -10,6 +10,7 @@ use super::link::{Client, FromBroker, Link, WINDOW};
 use super::mapping::Refusal;
 use super::notify::Notify;
 use super::replay::Replay;
+use super::saver::TOGETHER;
 use super::signals::Signals;
 use crate::cli::message::Messages;
 use batch::Batch;
@@ -202,14 +203,12 @@ impl<'a> Gateway<'a> {
         while self.client.is_some() && self.keeper.outbox.len() > 0 && Instant::now() < until {
             self.listen(PATIENCE);
         }
-        let (mut waiting, mut unwritten) = (0, None);
-        for name in self.keeper.unsaved() {
-            match self.keeper.save(&name) {
-                Ok(saved) => waiting += usize::from(!saved),
-                Err(error) => unwritten = Some(error),
-            }
+        // What is being written may be older than the last rows.
+        let mut saved = self.keeper.settle();
+        for some in self.keeper.unsaved().chunks(TOGETHER) {
+            saved = saved.and_then(|()| self.keeper.save(some)).and_then(|()| self.keeper.settle());
         }
-        if let Some(error) = unwritten {
+        if let Err(error) = saved {
             let words = format!("{error:#}; the journal has the rows since the last states");
             self.messages.caution(&words);
         }
@@ -225,9 +224,9 @@ impl<'a> Gateway<'a> {
         if !left_out.is_empty() {
             words.push_str(&format!("; messages left out: {}", left_out.join(", ")));
         }
-        words.push_str(match (waiting, self.keeper.unsaved().len()) {
-            (_, 0) => "; the states are saved",
-            (0, _) => "; not all states are saved",
+        words.push_str(match (self.keeper.unsaved().len(), self.keeper.outbox.len()) {
+            (0, _) => "; the states are saved",
+            (_, 0) => "; not all states are saved",
             _ => "; events have not arrived, and go out after the next start",
         });
         self.messages.say(&words);

@@ -14,6 +14,8 @@ mod anew;
 mod own;
 mod reload;
 mod replay;
+mod rows;
+mod saving;
 #[cfg(test)]
 mod tests;
 
@@ -24,15 +26,16 @@ use super::mapping::{Accepted, Refusal};
 use super::outbox::Outbox;
 use super::publication;
 use super::recent::Recent;
+use super::saver::Saver;
 use super::silence::Silence;
 use crate::cli::StepTime;
 use crate::cli::fleet::{locked, stem};
 use crate::cli::message::Messages;
 use crate::cli::monitor::{NotResumed, Steps, Told};
-use crate::cli::output::{make_folder, remove_orphans, write_file};
+use crate::cli::output::{make_folder, remove_orphans};
 use crate::report::Input;
 use anyhow::{Context, bail};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,8 +48,9 @@ const ZONE: &str = "UTC";
 struct Cylinder {
     assigned: Assigned,
     steps: Steps,
-    /// The oldest segment with rows that its state does not know.
+    /// The oldest segment with rows that its state does not know, and of those that the state knows that is being written.
     unsaved_since: Option<u64>,
+    saving_since: Option<u64>,
     /// Why its monitor has failed, until it has begun anew.
     failed: Option<String>,
 }
@@ -66,12 +70,15 @@ pub(super) struct Keeper<'a> {
     cylinders: BTreeMap<String, Cylinder>,
     /// Cylinders that came by the pattern.
     by_pattern: usize,
+    /// Cylinders whose monitors have failed.
+    failed: BTreeSet<String>,
     alarms: Alarms,
     /// Changes of these alarms that are not published yet.
     own: Vec<(String, Told)>,
     pub silence: Silence,
     pub outbox: Outbox,
     pub recent: Recent,
+    saver: Saver,
     /// Rows that were taken in.
     pub rows: u64,
     _lock: File,
@@ -96,6 +103,7 @@ impl<'a> Keeper<'a> {
         }
         let mut keeper = Self {
             by_pattern: 0,
+            failed: BTreeSet::new(),
             own: alarms.told().map(|(name, told)| (name.to_owned(), told.clone())).collect(),
             alarms,
             silence: Silence::default(),
@@ -106,6 +114,7 @@ impl<'a> Keeper<'a> {
             cylinders: BTreeMap::new(),
             outbox: Outbox::default(),
             recent: Recent::default(),
+            saver: Saver::new(),
             rows: 0,
             _lock: lock,
         };
@@ -176,141 +185,18 @@ impl<'a> Keeper<'a> {
         self.silence.watch(name, assigned.silent_after, Instant::now());
         self.cylinders.insert(
             name.to_owned(),
-            Cylinder { assigned: assigned.clone(), steps, unsaved_since: None, failed: None },
+            Cylinder {
+                assigned: assigned.clone(),
+                steps,
+                unsaved_since: None,
+                saving_since: None,
+                failed: None,
+            },
         );
         match resumed {
             Ok(()) => Ok(()),
             Err(reason) => self.begin_anew(name, &reason),
         }
-    }
-
-    /// Puts rows and acknowledgements on disk; only then they are accepted.
-    pub(super) fn record(&mut self, inputs: &[(String, Delivered)]) -> anyhow::Result<()> {
-        for (name, input) in inputs {
-            // A later alarm must not be acknowledged when the journal is read again: those of the gateway are before it.
-            if let Delivered::Acknowledge(comment) = input {
-                let told = self.alarms.acknowledge(name, comment);
-                self.own.extend(told.into_iter().map(|told| (name.clone(), told)));
-            }
-        }
-        self.publish_alarms()?;
-        let entry = |(name, input): &(String, Delivered)| match input {
-            Delivered::Row(Accepted { time_ns, cells }) => {
-                Entry::Row { cylinder: name.clone(), time_ns: *time_ns, cells: cells.clone() }
-            }
-            Delivered::Acknowledge(comment) => {
-                Entry::Acknowledged { cylinder: name.clone(), comment: comment.clone() }
-            }
-        };
-        self.journal.append(&inputs.iter().map(entry).collect::<Vec<_>>())
-    }
-
-    /// Gives what was recorded to its monitor.
-    pub(super) fn take(&mut self, name: &str, input: Delivered) -> Result<(), (Refusal, String)> {
-        let number = self.journal.number();
-        if let Some(cylinder) = self.cylinders.get_mut(name) {
-            cylinder.unsaved_since.get_or_insert(number);
-        }
-        match input {
-            Delivered::Row(Accepted { time_ns, cells }) => {
-                self.rows += 1;
-                self.recent.note(name, time_ns, &cells);
-                self.silence.heard(name, Instant::now());
-                if self.alarms.must_clear(name) {
-                    self.set_alarm(name, Kind::Silent, false, time_ns as f64 * 1e-9);
-                }
-                let names = self.names.clone();
-                self.step(name, &names, time_ns, &cells)
-            }
-            Delivered::Acknowledge(comment) => {
-                self.acknowledge(name, &comment);
-                Ok(())
-            }
-        }
-    }
-
-    fn step(
-        &mut self,
-        name: &str,
-        names: &[String],
-        time_ns: i64,
-        cells: &[f64],
-    ) -> Result<(), (Refusal, String)> {
-        let Some(cylinder) = self.cylinders.get_mut(name) else { return Ok(()) };
-        if cylinder.failed.is_some() {
-            return Err((Refusal::Monitor, "its monitor begins anew after this row".to_owned()));
-        }
-        let readings: Vec<(&str, f64)> =
-            names.iter().map(String::as_str).zip(cells.iter().copied()).collect();
-        let had_begun = cylinder.steps.has_begun();
-        match cylinder.steps.step(StepTime::Instant(time_ns, ZONE.to_owned()), &readings) {
-            Ok((table, told)) => {
-                self.tell(name, &told);
-                publication::last_row(&self.settings.prefix, name, &table)
-                    .into_iter()
-                    .for_each(|message| self.outbox.push(message));
-                Ok(())
-            }
-            Err(error) => {
-                let reason = format!("{error:#}");
-                // It may have taken in a part of the row.
-                cylinder.failed = had_begun.then(|| reason.clone());
-                Err((Refusal::Monitor, reason))
-            }
-        }
-    }
-
-    fn acknowledge(&mut self, name: &str, comment: &str) {
-        let told = self.cylinders.get_mut(name).map(|cylinder| cylinder.steps.acknowledge(comment));
-        self.tell(name, &told.unwrap_or_default());
-    }
-
-    fn tell(&mut self, name: &str, told: &[Told]) {
-        for one in told {
-            self.messages.say(&format!("{name}: {}", one.words));
-            self.outbox.push(publication::told(&self.settings.prefix, name, one));
-        }
-    }
-
-    /// Names of the cylinders whose states do not know all.
-    pub(super) fn unsaved(&self) -> Vec<String> {
-        let unsaved = self.cylinders.iter().filter(|(_, cylinder)| cylinder.unsaved_since.is_some());
-        unsaved.map(|(name, _)| name.clone()).collect()
-    }
-
-    /// Saves the state of a cylinder; `false`: it waits until its events have arrived.
-    pub(super) fn save(&mut self, name: &str) -> anyhow::Result<bool> {
-        let Some(cylinder) = self.cylinders.get(name).filter(|cylinder| cylinder.unsaved_since.is_some())
-        else {
-            return Ok(true);
-        };
-        if self.outbox.has_events(name) {
-            return Ok(false);
-        }
-        let [state, waiting] = self.files(name);
-        let (file, bytes) = match cylinder.steps.state_file()? {
-            Some(bytes) => (&state, bytes),
-            None => (&waiting, cylinder.steps.save()?),
-        };
-        let sha256 = Input::of("", &bytes).sha256;
-        self.journal.append(&[Entry::Saving { cylinder: name.to_owned(), sha256 }])?;
-        write_file(file, &bytes)?;
-        if *file == state && waiting.is_file() {
-            std::fs::remove_file(&waiting)
-                .with_context(|| format!("{} cannot be removed", waiting.display()))?;
-        }
-        if let Some(cylinder) = self.cylinders.get_mut(name) {
-            cylinder.unsaved_since = None;
-        }
-        Ok(true)
-    }
-
-    /// Begins a segment, and removes those that no state needs, but for the last of them: what is delivered again is known by it.
-    pub(super) fn turn_over(&mut self) -> anyhow::Result<()> {
-        let oldest = self.cylinders.values().filter_map(|cylinder| cylinder.unsaved_since).min();
-        let needed = oldest.unwrap_or(self.journal.number());
-        self.journal.remove_before(needed.saturating_sub(1))?;
-        self.journal.rotate()
     }
 
     /// Number of cylinders.

@@ -65,7 +65,12 @@ fn rows_wait_at_the_broker_while_the_disk_is_full_and_none_is_lost() {
     wait_for(MINUTES - 1, &heard, folder.path());
     end(running, folder.path());
     assert!(said(folder.path()).contains("the disk can be written again"));
-    assert_eq!(said(folder.path()).matches("No space left").count(), 1, "{}", said(folder.path()));
+    // Once of each kind of file.
+    assert!(
+        (1..=3).contains(&said(folder.path()).matches("No space left").count()),
+        "{}",
+        said(folder.path())
+    );
     assert_same_events(&heard, folder.path());
     assert_same_states(folder.path());
     drop(disk);

@@ -2,6 +2,7 @@
 mod broker;
 mod demonstration;
 mod hardship;
+mod load;
 #[cfg(target_os = "linux")]
 mod notify;
 mod refusals;

@@ -1,6 +1,7 @@
 //! Messages that were delivered: onto the disk, then acknowledged, then to the monitors. While the disk is full they wait here, and the
 //! broker keeps those that follow.
 use super::reception::LeftOut;
+use super::saving::{AGAIN, Written};
 use super::{Gateway, RETRY};
 use crate::cli::serve::keeper::Delivered;
 use crate::cli::serve::link::Delivery;
@@ -42,11 +43,11 @@ impl Gateway<'_> {
             return;
         }
         if let Err(error) = self.keeper.record(&self.batch.inputs) {
-            self.unwritable(&format!("{error:#}; the broker keeps the rows, and it is tried again"));
+            self.noted(Written::Journal, Err(error), "the broker keeps the rows, and it is tried again");
             self.batch.retry = Some(Instant::now() + RETRY);
             return;
         }
-        self.writable();
+        self.noted(Written::Journal, Ok(()), AGAIN);
         let Batch { deliveries, inputs, .. } = std::mem::take(&mut self.batch);
         if let Some(client) = &self.client {
             // A receipt that does not go out costs one more delivery, which is known.
@@ -64,8 +65,7 @@ impl Gateway<'_> {
 
     /// Publishes what has changed of the gateway's own alarms.
     pub(super) fn publish_alarms(&mut self) {
-        if let Err(error) = self.keeper.publish_alarms() {
-            self.unwritable(&format!("{error:#}; it is tried again"));
-        }
+        let written = self.keeper.publish_alarms();
+        self.noted(Written::Alarms, written, AGAIN);
     }
 }

@@ -1,20 +1,34 @@
 //! States saved one after the other, and monitors that begin anew; a disk that cannot be written is said once and tried again.
 use super::{Gateway, RETRY};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::time::{Duration, Instant};
+
+/// Between two writes; the states of one reach the disk together.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// What becomes of what could not be written.
+pub(super) const AGAIN: &str = "it is tried again";
 
 /// What is to be saved, and when.
 pub(super) struct Saving {
     /// The next first.
     names: VecDeque<String>,
     next: Instant,
-    /// Between two states.
-    pause: Duration,
+    /// How many are written together.
+    together: usize,
     next_round: Instant,
     /// When monitors that failed are tried again.
     next_anew: Instant,
-    /// Whether the disk could not be written.
-    is_full: bool,
+    /// What could not be written.
+    unwritten: BTreeSet<Written>,
+}
+
+/// What is written; the last bytes of a disk may hold a row and no state.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Written {
+    Journal,
+    States,
+    Alarms,
 }
 
 impl Saving {
@@ -23,10 +37,10 @@ impl Saving {
         Self {
             names: VecDeque::new(),
             next: now,
-            pause: Duration::ZERO,
+            together: 1,
             next_round: now + every,
             next_anew: now,
-            is_full: false,
+            unwritten: BTreeSet::new(),
         }
     }
 }
@@ -39,17 +53,23 @@ impl Gateway<'_> {
             let every = self.settings.save_every;
             self.saving.next_round = now + every;
             let turned = self.keeper.turn_over();
-            self.noted(turned);
+            self.noted(Written::Journal, turned, AGAIN);
             self.saving.names = self.keeper.unsaved().into();
             self.saving.next = now;
-            self.saving.pause = every / 2 / (self.saving.names.len().max(1) as u32);
+            let turns = (every / 2).as_secs_f64() / PAUSE.as_secs_f64();
+            self.saving.together = (self.saving.names.len() as f64 / turns).ceil() as usize;
         }
-        while now >= self.saving.next
-            && let Some(name) = self.saving.names.pop_front()
-        {
-            self.saving.next += self.saving.pause;
-            let saved = self.keeper.save(&name).map(|_| ());
-            self.noted(saved);
+        if now >= self.saving.next && !self.saving.names.is_empty() {
+            self.saving.next = now + PAUSE;
+            let together = self.saving.together.min(self.saving.names.len());
+            let names: Vec<String> = self.saving.names.drain(..together).collect();
+            if let Err(error) = self.keeper.save(&names) {
+                self.noted(Written::States, Err(error), AGAIN);
+            }
+        }
+        match self.keeper.note_saved() {
+            Ok(0) => {}
+            saved => self.noted(Written::States, saved.map(|_| ()), AGAIN),
         }
     }
 
@@ -60,29 +80,24 @@ impl Gateway<'_> {
             return;
         }
         if let Err(error) = self.keeper.begin_failed_anew() {
-            self.unwritable(&format!("{error:#}; it is tried again"));
+            self.noted(Written::States, Err(error), AGAIN);
             self.saving.next_anew = now + RETRY;
         }
     }
 
-    fn noted(&mut self, written: anyhow::Result<()>) {
+    /// Says once what cannot be written, and once that all can be written again.
+    pub(super) fn noted(&mut self, what: Written, written: anyhow::Result<()>, what_then: &str) {
         match written {
-            Ok(()) => self.writable(),
-            Err(error) => self.unwritable(&format!("{error:#}; it is tried again")),
-        }
-    }
-
-    /// Says once that the disk cannot be written.
-    pub(super) fn unwritable(&mut self, words: &str) {
-        if !std::mem::replace(&mut self.saving.is_full, true) {
-            self.messages.caution(words);
-        }
-    }
-
-    /// Says that it can be written again.
-    pub(super) fn writable(&mut self) {
-        if std::mem::take(&mut self.saving.is_full) {
-            self.messages.caution("the disk can be written again");
+            Err(error) => {
+                if self.saving.unwritten.insert(what) {
+                    self.messages.caution(&format!("{error:#}; {what_then}"));
+                }
+            }
+            Ok(()) => {
+                if self.saving.unwritten.remove(&what) && self.saving.unwritten.is_empty() {
+                    self.messages.caution("the disk can be written again");
+                }
+            }
         }
     }
 }

@@ -4,12 +4,12 @@ use super::*;
 impl Keeper<'_> {
     /// Begins the monitors anew that have failed; rows that come before are refused, now and when the journal is read again.
     pub(in crate::cli::serve) fn begin_failed_anew(&mut self) -> anyhow::Result<()> {
-        let failed: Vec<(String, String)> = self
-            .cylinders
-            .iter()
-            .filter_map(|(name, cylinder)| Some((name.clone(), cylinder.failed.clone()?)))
-            .collect();
-        failed.iter().try_for_each(|(name, reason)| self.begin_anew(name, reason))
+        while let Some(name) = self.failed.first().cloned() {
+            let reason = self.cylinders.get(&name).and_then(|cylinder| cylinder.failed.clone());
+            self.begin_anew(&name, &reason.unwrap_or_default())?;
+            self.failed.remove(&name);
+        }
+        Ok(())
     }
 
     /// Begins a monitor anew: said, an event, and what it had is set aside.
@@ -18,6 +18,7 @@ impl Keeper<'_> {
             .caution(&format!("{name}: {reason}; its state is set aside and its monitor begins anew"));
         let (cylinder, reason, time_s) = (name.to_owned(), reason.to_owned(), self.last_row_s(name));
         self.journal.append(&[Entry::Anew { cylinder, reason: reason.clone(), time_s }])?;
+        self.settle()?;
         self.set_aside(name)?;
         let number = self.journal.number();
         if let Some(cylinder) = self.cylinders.get_mut(name) {

@@ -1,7 +1,6 @@
 //! The alarms of the gateway itself.
 use super::*;
 use jiff::Timestamp;
-use std::collections::BTreeSet;
 
 impl Keeper<'_> {
     /// Raises the alarm of those that have fallen silent.

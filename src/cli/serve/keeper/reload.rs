@@ -28,13 +28,14 @@ impl Keeper<'_> {
         let names: Vec<String> =
             settings.mapping.readings.iter().map(|reading| reading.name.clone()).collect();
         // As it was: the state on disk is that of the options before.
-        for name in self.cylinders.keys().cloned().collect::<Vec<_>>() {
-            if self.assigned_in(&settings, &name)
-                != self.cylinders.get(&name).map(|cylinder| &cylinder.assigned)
-            {
-                self.save(&name)?;
-            }
-        }
+        let is_other = |(name, cylinder): &(&String, &Cylinder)| {
+            self.assigned_in(&settings, name) != Some(&cylinder.assigned)
+        };
+        let others: Vec<String> =
+            self.cylinders.iter().filter(is_other).map(|(name, _)| name.clone()).collect();
+        self.settle()?;
+        self.save(&others)?;
+        self.settle()?;
         let mut fates = Vec::new();
         for (name, cylinder) in &self.cylinders {
             fates.push((name.clone(), self.fate(&settings, &names, name, cylinder)?));
@@ -105,6 +106,7 @@ impl Keeper<'_> {
             assigned: assigned.clone(),
             steps,
             unsaved_since: Some(cylinder.unsaved_since.unwrap_or(self.journal.number())),
+            saving_since: None,
             failed: cylinder.failed.clone(),
         })))
     }
