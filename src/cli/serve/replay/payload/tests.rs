@@ -54,4 +54,14 @@ proptest::proptest! {
             proptest::prop_assert_eq!(unit.to_si(written(unit, si)), si, "{}", unit.suffix);
         }
     }
+
+    #[test]
+    fn a_reading_of_a_few_digits_stays_as_the_logger_wrote_it(digits in -99_999i32..99_999) {
+        let value = f64::from(digits) / 1000.0;
+        for suffix in ["bar", "kpa", "psi", "degc", "k"] {
+            let unit = units_of(Dimension::Temperature).chain(units_of(Dimension::Pressure));
+            let unit = unit.into_iter().find(|unit| unit.suffix == suffix).unwrap();
+            proptest::prop_assert_eq!(written(unit, unit.to_si(value)), value, "{}", suffix);
+        }
+    }
 }
