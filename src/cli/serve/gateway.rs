@@ -1,5 +1,6 @@
 //! The gateway while it runs: messages in, results out, states saved one after the other.
 mod batch;
+mod rate;
 mod reception;
 mod reload;
 mod saving;
@@ -11,6 +12,7 @@ use super::mapping::Refusal;
 use super::signals::Signals;
 use crate::cli::message::Messages;
 use batch::Batch;
+use rate::Rates;
 use reload::Reload;
 use saving::Saving;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,6 +42,7 @@ pub(super) struct Gateway<'a> {
     /// The connection that there is.
     client: Option<Client>,
     batch: Batch,
+    rates: Rates,
     refusals: BTreeMap<Refusal, u64>,
     /// What was said of cylinders.
     said: BTreeSet<(String, Refusal)>,
@@ -70,6 +73,7 @@ impl<'a> Gateway<'a> {
             signals,
             client: None,
             batch: Batch::default(),
+            rates: Rates::default(),
             refusals: BTreeMap::new(),
             said: BTreeSet::new(),
             down: None,
@@ -95,12 +99,12 @@ impl<'a> Gateway<'a> {
     /// Takes in what has come, after a wait if nothing has.
     fn listen(&mut self, patience: Duration) {
         let mut patience = patience;
-        if self.batch.len() >= BATCH {
+        if self.batch.len() >= self.room() {
             // They wait for the disk.
             std::thread::sleep(patience);
             return self.take();
         }
-        while self.batch.len() < BATCH
+        while self.batch.len() < self.room()
             && let Some(said) = self.link.next(patience)
         {
             patience = Duration::ZERO;

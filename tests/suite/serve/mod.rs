@@ -1,6 +1,7 @@
 //! `cylwatch serve` beside a real broker: the events and states of `fleet`, through kills of either; bad configurations and bad messages.
 mod broker;
 mod hardship;
+mod hostile;
 mod load;
 mod refusals;
 mod reload;
