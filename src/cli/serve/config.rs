@@ -37,7 +37,12 @@ pub(super) struct Settings {
     pub cylinders: usize,
     /// `None`: nothing listens.
     pub page: Option<Page>,
+    /// Most rows of a cylinder.
+    pub rows_a_minute: u32,
 }
+
+/// Largest payload that a configuration may allow, bytes: [`link`](super::link) holds many.
+const MESSAGE_BYTES: u32 = 1 << 20;
 
 /// Without a row for so long a cylinder is silent, unless the configuration says otherwise, s.
 const SILENT_AFTER_S: f64 = 3600.0;
@@ -131,6 +136,15 @@ impl Checked<'_> {
         self.seconds(path, given, usual, (1.0, 400.0 * 86_400.0))
     }
 
+    /// A number from 1 on.
+    fn count(&self, path: &str, given: Option<u32>, usual: u32, most: u32) -> anyhow::Result<u32> {
+        let value = given.unwrap_or(usual);
+        if (1..=most).contains(&value) {
+            return Ok(value);
+        }
+        self.refuse(path, &value.to_string(), &format!("between 1 and {most}"), "another number")
+    }
+
     /// A time within bounds.
     fn seconds(
         &self,
@@ -162,12 +176,17 @@ pub(super) fn read(path: &Path) -> anyhow::Result<(Settings, Broker)> {
     let (document, places) = document::read::<Document>(&text, &file)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let checked = Checked { places: &places, folder: &folder };
-    Ok((settings(&document, &checked)?, checked.broker(document.broker)?))
+    let settings = settings(&document, &checked)?;
+    let broker = checked.broker(document.broker, settings.mapping.message_bytes)?;
+    Ok((settings, broker))
 }
 
 fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settings> {
     let limit = document.limits.cylinders.unwrap_or(10_000) as usize;
-    let message_bytes = document.limits.message_bytes.unwrap_or(65_536) as usize;
+    let message_bytes =
+        checked.count("limits.message_bytes", document.limits.message_bytes, 65_536, MESSAGE_BYTES)? as usize;
+    let rows_a_minute =
+        checked.count("limits.rows_a_minute", document.limits.rows_a_minute, 600, 1_000_000)?;
     let prefix = document.publish.prefix.clone().unwrap_or_else(|| "cylwatch".to_owned());
     if prefix.is_empty() || has_filter(&prefix) || prefix.starts_with('$') {
         checked.refuse("publish.prefix", &prefix, "a topic without + and #", "cylwatch is usual")?;
@@ -276,6 +295,7 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
         prefix,
         cylinders: limit,
         page: document.page.as_ref().map(|table| checked.page(table)).transpose()?,
+        rows_a_minute,
     })
 }
 

@@ -148,6 +148,7 @@ pub(super) struct PublishTable {
 pub(super) struct LimitsTable {
     pub message_bytes: Option<u32>,
     pub cylinders: Option<u32>,
+    pub rows_a_minute: Option<u32>,
 }
 
 /// Where the page listens.

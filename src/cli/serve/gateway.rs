@@ -1,5 +1,6 @@
 //! The gateway while it runs: messages in, results out, states saved one after the other.
 mod batch;
+mod rate;
 mod reception;
 mod reload;
 mod saving;
@@ -15,6 +16,7 @@ use super::saver::TOGETHER;
 use super::signals::Signals;
 use crate::cli::message::Messages;
 use batch::Batch;
+use rate::Rates;
 use reload::Reload;
 use saving::Saving;
 use std::collections::BTreeSet;
@@ -46,6 +48,7 @@ pub(super) struct Gateway<'a> {
     /// Subscriptions that the broker has not answered.
     subscribing: usize,
     batch: Batch,
+    rates: Rates,
     /// What was said of cylinders.
     said: BTreeSet<(String, Refusal)>,
     /// Why there is no connection, as it was said.
@@ -80,6 +83,7 @@ impl<'a> Gateway<'a> {
             client: None,
             subscribing: 0,
             batch: Batch::default(),
+            rates: Rates::default(),
             said: BTreeSet::new(),
             down: None,
             reload: None,
@@ -115,12 +119,12 @@ impl<'a> Gateway<'a> {
     /// Takes in what has come, after a wait if nothing has.
     fn listen(&mut self, patience: Duration) {
         let mut patience = patience;
-        if self.batch.len() >= BATCH {
+        if self.batch.len() >= self.room() {
             // They wait for the disk.
             std::thread::sleep(patience);
             return self.take();
         }
-        while self.batch.len() < BATCH
+        while self.batch.len() < self.room()
             && let Some(said) = self.link.next(patience)
         {
             patience = Duration::ZERO;

@@ -16,7 +16,9 @@ const WAITING: usize = 1024;
 const REQUESTS: usize = 1 << 16;
 /// Largest packet of the broker, bytes: larger than any message that is taken, so that those are counted instead of ending the connection.
 const LARGEST: usize = 1 << 24;
-/// Largest packet of protocol 3.1.1, which has no way to tell the broker of a bound.
+/// Largest packet of protocol 3.1.1, which has no way to tell the broker of a bound: the largest that there is. The client would end the
+/// connection at a larger one, and the broker would deliver it again for ever; so it is read, let go at once, and acknowledged as one that
+/// is too large.
 const LARGEST_OF_ALL: usize = 268_435_455;
 /// Packets on their way to the broker.
 pub(super) const WINDOW: u16 = 20;
@@ -45,6 +47,7 @@ pub(super) enum FromBroker {
 /// A message.
 pub(super) struct Delivery {
     pub topic: String,
+    /// Of a payload that is too large its beginning: see [`held`].
     pub payload: Vec<u8>,
     /// Whether it may have been delivered before: once more, or as what the broker keeps.
     pub again: bool,
@@ -142,6 +145,11 @@ impl Link {
     }
 }
 
+/// A payload while it waits: of one that is too large so much that this is seen, whatever its size.
+fn held(payload: &[u8], broker: &Broker) -> Vec<u8> {
+    payload[..payload.len().min(broker.message_bytes + 1)].to_vec()
+}
+
 /// One connection from its beginning to its end; `None`: it is not listened to any more.
 fn called(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<()> {
     let end = match broker.protocol {
@@ -169,7 +177,7 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                 }
                 rumqttc::Packet::Publish(publish) => FromBroker::Message(Box::new(Delivery {
                     topic: publish.topic.clone(),
-                    payload: publish.payload.to_vec(),
+                    payload: held(&publish.payload, broker),
                     again: publish.dup || publish.retain,
                     arrived: Instant::now(),
                     receipt: Receipt::V4(rumqttc::Publish { payload: Vec::new().into(), ..publish }),
@@ -210,7 +218,7 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                 Packet5::ConnAck(ack) => FromBroker::Up(Client::V5(client.clone()), ack.session_present),
                 Packet5::Publish(publish) => FromBroker::Message(Box::new(Delivery {
                     topic: String::from_utf8_lossy(&publish.topic).into_owned(),
-                    payload: publish.payload.to_vec(),
+                    payload: held(&publish.payload, broker),
                     again: publish.dup || publish.retain,
                     arrived: Instant::now(),
                     receipt: Receipt::V5(v5::mqttbytes::v5::Publish {

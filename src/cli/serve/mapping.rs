@@ -28,6 +28,8 @@ pub(super) enum Refusal {
     NoTime,
     NoNumber,
     NoReading,
+    /// More rows than a cylinder may send.
+    TooFast,
     /// The monitor does not take it.
     Monitor,
     /// The broker has delivered it before.
@@ -45,6 +47,7 @@ impl Refusal {
             Self::NoTime => "it has no time of the stated form",
             Self::NoNumber => "a reading is no number",
             Self::NoReading => "it has none of the readings",
+            Self::TooFast => "its cylinder sends more than rows_a_minute",
             Self::Monitor => "the monitor does not take it",
             Self::Again => "it was delivered before",
         }
@@ -218,6 +221,8 @@ fn instant(time: &Value, form: TimeForm) -> Option<i64> {
     i64::try_from(stamp.as_nanosecond()).ok()
 }
 
+#[cfg(test)]
+mod hostile;
 #[cfg(test)]
 mod tests {
     use super::*;

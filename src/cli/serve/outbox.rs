@@ -1,9 +1,12 @@
 //! What is to be published, until the broker has acknowledged it. Nothing here sends.
 //!
 //! Events keep their order and are never left out. Of verdict and estimate the newest waits alone: an older one would be replaced at the broker
-//! at once.
+//! at once. Nobody may push rows' events without end at a broker that never acknowledges: see [`Outbox::is_full`].
 use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 use std::time::Instant;
+
+/// Events that have not arrived, beyond which no more rows are taken in; those of the rows of one batch may come on top.
+const EVENTS: usize = 10_000;
 
 /// A message to the broker.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +40,8 @@ pub(super) struct Outbox {
     pub cause: Option<Instant>,
     /// The same of messages that were not handed to the link.
     causes: BTreeMap<u64, Instant>,
+    /// All of them.
+    due: usize,
 }
 
 impl Outbox {
@@ -48,7 +53,10 @@ impl Outbox {
             self.kept.insert(message.topic.clone(), message.payload.clone());
         }
         match &message.event_of {
-            Some(cylinder) => *self.events.entry(cylinder.clone()).or_default() += 1,
+            Some(cylinder) => {
+                *self.events.entry(cylinder.clone()).or_default() += 1;
+                self.due += 1;
+            }
             None => {
                 if let Some(number) = self.replaceable.get(&message.topic) {
                     self.messages.insert(*number, message);
@@ -107,6 +115,7 @@ impl Outbox {
             && let Some(count) = self.events.get_mut(&cylinder)
         {
             *count -= 1;
+            self.due -= 1;
             if *count == 0 {
                 self.events.remove(&cylinder);
             }
@@ -115,10 +124,16 @@ impl Outbox {
 
     /// A new connection: what has not arrived is to be sent again, and to a broker that has forgotten us all that it is to keep.
     pub(super) fn connected(&mut self, is_known: bool) {
+        // Of those that a newer one replaces the newest is enough: otherwise every lost connection would leave one more.
+        let replaceable = self.messages.iter().filter(|(_, message)| message.event_of.is_none());
+        self.replaceable = replaceable.map(|(number, message)| (message.topic.clone(), *number)).collect();
+        let newest = &self.replaceable;
+        self.messages.retain(|number, message| {
+            message.event_of.is_some() || newest.get(&message.topic) == Some(number)
+        });
         self.waiting = self.messages.keys().copied().collect();
         self.handed.clear();
         self.sent.clear();
-        self.replaceable.clear();
         if is_known {
             return;
         }
@@ -138,6 +153,11 @@ impl Outbox {
     /// Whether a cylinder has events that have not arrived.
     pub(super) fn has_events(&self, cylinder: &str) -> bool {
         self.events.contains_key(cylinder)
+    }
+
+    /// Whether so many events have not arrived that rows must wait.
+    pub(super) fn is_full(&self) -> bool {
+        self.due >= EVENTS
     }
 
     /// Messages that have not arrived.
@@ -160,6 +180,33 @@ mod tests {
 
     fn handed(outbox: &mut Outbox, window: usize) -> Vec<String> {
         std::iter::from_fn(|| outbox.hand(window)).map(|message| message.payload).collect()
+    }
+
+    #[test]
+    fn events_that_never_arrive_fill_it_and_it_takes_rows_again_after_they_have() {
+        let mut outbox = Outbox::default();
+        for _ in 0..EVENTS - 1 {
+            outbox.push(event("a"));
+        }
+        assert!(!outbox.is_full());
+        outbox.push(event("a"));
+        outbox.connected(true);
+        assert!(outbox.is_full());
+        outbox.hand(1).unwrap();
+        outbox.sent(1);
+        outbox.arrived(1);
+        assert!(!outbox.is_full());
+    }
+
+    #[test]
+    fn connections_that_are_lost_leave_one_verdict() {
+        let mut outbox = Outbox::default();
+        for connection in 0..5 {
+            outbox.push(verdict(&connection.to_string()));
+            assert_eq!(handed(&mut outbox, 20), [connection.to_string()]);
+            outbox.connected(true);
+        }
+        assert_eq!(outbox.len(), 1);
     }
 
     #[test]

@@ -88,15 +88,15 @@ fn broker(folder: &Path, port: u16) -> Option<Process> {
 
 fn client(port: u16, name: &str) -> (Client, Connection) {
     let mut options = MqttOptions::new(name, "127.0.0.1", port);
-    options.set_clean_session(false).set_max_packet_size(1 << 20, 1 << 20).set_keep_alive(PATIENCE);
+    options.set_clean_session(false).set_max_packet_size(1 << 20, 1 << 26).set_keep_alive(PATIENCE);
     Client::new(options, 1 << 16)
 }
 
 /// Publishes messages, which the broker has when this returns.
-pub(super) fn publish(port: u16, messages: &[(String, String)]) {
+pub(super) fn publish<T: AsRef<[u8]>>(port: u16, messages: &[(String, T)]) {
     let (client, mut connection) = client(port, "publisher");
     for (topic, payload) in messages {
-        client.publish(topic, QoS::AtLeastOnce, false, payload.as_bytes()).unwrap();
+        client.publish(topic, QoS::AtLeastOnce, false, payload.as_ref()).unwrap();
     }
     let mut missing = messages.len();
     while missing > 0 {

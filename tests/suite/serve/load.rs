@@ -10,7 +10,7 @@ use std::time::Instant;
 /// Between two rows of a cylinder.
 const EVERY_S: u64 = 10;
 
-fn asked(name: &str, usual: u64) -> u64 {
+pub(super) fn asked(name: &str, usual: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
 }
 
@@ -21,7 +21,7 @@ fn of_many(port: u16, cylinders: u64) -> String {
         .replace("time = \"/t\"", "time = \"/t\"\nclock = \"seconds\"")
 }
 
-fn rss_mb(gateway: &Process) -> f64 {
+pub(super) fn rss_mb(gateway: &Process) -> f64 {
     let status = std::fs::read_to_string(format!("/proc/{}/status", gateway.0.id())).unwrap();
     let kb = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
     kb.trim().trim_end_matches(" kB").parse::<f64>().unwrap() / 1024.0

@@ -2,6 +2,7 @@
 mod broker;
 mod demonstration;
 mod hardship;
+mod hostile;
 mod http;
 mod load;
 #[cfg(target_os = "linux")]

@@ -32,6 +32,12 @@ fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
         ("depot/+/gas", "depot/#", &["gateway.toml:29", "one level +"]),
         ("time = \"/t\"\n", "", &["payload time", "arrival"]),
         ("/temps/0", "temps/0", &["gateway.toml:36", "begin it with /"]),
+        (
+            "[payload]",
+            "[limits]\nmessage_bytes = 2000000\n[payload]",
+            &["message_bytes", "between 1 and 1048576"],
+        ),
+        ("[payload]", "[limits]\nrows_a_minute = 0\n[payload]", &["rows_a_minute", "between 1"]),
         ("pressure_bar\"", "pressure_l\"", &["pressure_l"]),
         (
             "[payload]",

@@ -15,10 +15,12 @@ pub(in crate::cli::serve) struct Broker {
     pub login: Option<(String, String)>,
     pub keep_alive: Duration,
     pub session_expiry: Duration,
+    /// Largest payload that is taken.
+    pub message_bytes: usize,
 }
 
 impl Checked<'_> {
-    pub(super) fn broker(&self, table: BrokerTable) -> anyhow::Result<Broker> {
+    pub(super) fn broker(&self, table: BrokerTable, message_bytes: usize) -> anyhow::Result<Broker> {
         if table.password.is_some() {
             bail!(
                 "{}: broker password stands in the configuration: write it to a file that others cannot read and name \
@@ -46,6 +48,7 @@ impl Checked<'_> {
             protocol: table.protocol.unwrap_or_default(),
             client_id: table.client_id,
             login,
+            message_bytes,
             keep_alive: self.seconds("broker.keep_alive_s", table.keep_alive_s, 30.0, (5.0, 3_600.0))?,
             session_expiry: self.seconds(
                 "broker.session_expiry_s",

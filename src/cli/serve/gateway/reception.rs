@@ -5,6 +5,7 @@ use crate::cli::serve::link::Delivery;
 use crate::cli::serve::mapping::{Addressed, Refusal};
 use jiff::Timestamp;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// A message that is left out.
 pub(super) struct LeftOut {
@@ -56,6 +57,11 @@ impl Gateway<'_> {
         let row = row.map_err(|refusal| LeftOut::of(name, refusal))?;
         if delivery.again && self.keeper.recent.has(name, row.time_ns, &row.cells) {
             return Err(LeftOut::of(name, Refusal::Again));
+        }
+        // What the broker delivers again was counted.
+        let a_minute = self.settings.rows_a_minute;
+        if !delivery.again && !self.rates.admit(name, row.time_ns, Instant::now(), a_minute) {
+            return Err(LeftOut::of(name, Refusal::TooFast));
         }
         Ok((name.to_owned(), Delivered::Row(row)))
     }

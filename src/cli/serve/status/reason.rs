@@ -3,7 +3,7 @@ use crate::cli::serve::mapping::Refusal;
 
 impl Refusal {
     /// Those that have a count from the start.
-    pub(in crate::cli::serve) const ALL: [Self; 9] = [
+    pub(in crate::cli::serve) const ALL: [Self; 10] = [
         Self::UnknownTopic,
         Self::TooManyCylinders,
         Self::TooLarge,
@@ -11,6 +11,7 @@ impl Refusal {
         Self::NoTime,
         Self::NoNumber,
         Self::NoReading,
+        Self::TooFast,
         Self::Monitor,
         Self::Again,
     ];
@@ -25,6 +26,7 @@ impl Refusal {
             Self::NoTime => "no_time",
             Self::NoNumber => "no_number",
             Self::NoReading => "no_reading",
+            Self::TooFast => "too_fast",
             Self::Monitor => "monitor",
             Self::Again => "again",
         }
