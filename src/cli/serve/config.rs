@@ -2,10 +2,11 @@
 mod broker;
 mod certificate;
 mod page;
+mod payload;
 mod secret;
 
-use super::document::{Document, OptionsTable, TimeForm};
-use super::mapping::{Mapping, Pattern, Reading, has_filter, is_level};
+use super::document::{Document, OptionsTable};
+use super::mapping::{Mapping, Pattern, has_filter, is_level};
 use crate::cli::fleet::{as_columns, vessel_beside};
 use crate::cli::monitor::Steps;
 use crate::cli::monitor_steps;
@@ -16,7 +17,7 @@ use anyhow::{Context, anyhow, bail};
 pub(super) use broker::Broker;
 pub(super) use page::{Page, Token};
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -200,13 +201,14 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
             "raise it",
         )?;
     }
-    let readings = readings(document, checked)?;
+    let readings = checked.readings(&document.payload)?;
     let names: Vec<String> = readings.iter().map(|reading| reading.name.clone()).collect();
     let types = types(document, &names, checked)?;
     let kind = |path: String, name: &str| match types.get(name) {
         Some(index) => Ok((format!("type[{index}].options"), &document.types[*index])),
         None => Err(checked.places.locate(check_unknown(&path, name, types.keys()))),
     };
+    let format = document.payload.format.unwrap_or_default();
     let (mut named, mut topics) = (BTreeMap::new(), HashMap::new());
     for (i, cylinder) in document.cylinder.iter().enumerate() {
         let path = |key: &str| format!("cylinder[{i}].{key}");
@@ -218,6 +220,7 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
                 "leave out /, + and #, and at most 128 bytes",
             )?;
         }
+        checked.place(format, &path("topic"), &cylinder.topic)?;
         if cylinder.topic.is_empty() || has_filter(&cylinder.topic) {
             checked.refuse(
                 &path("topic"),
@@ -254,6 +257,7 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
     }
     let (mut pattern, mut by_pattern) = (None, None);
     if let Some(table) = &document.pattern {
+        checked.place(format, "pattern.topic", &table.topic)?;
         pattern = Pattern::of(&table.topic, table.most as usize);
         if pattern.is_none() {
             let bound = "a topic with one level +, the name of a cylinder";
@@ -267,14 +271,6 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
     if named.is_empty() && pattern.is_none() {
         bail!("{}: there is no cylinder: write a [[cylinder]] for each, or a [pattern]", checked.at(""));
     }
-    let form = document.payload.clock.unwrap_or_default();
-    let time = document.payload.time.clone();
-    if time.is_none() && form != TimeForm::Arrival {
-        bail!(
-            "{}: payload time is missing: name its JSON pointer, or write clock = \"arrival\"",
-            checked.at("payload")
-        );
-    }
     let folder = checked.folder.join(&document.store.folder);
     let save_every =
         checked.seconds("store.save_every_s", document.store.save_every_s, 600.0, (1.0, 86_400.0))?;
@@ -282,10 +278,11 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
         folder,
         save_every,
         mapping: Mapping {
+            format,
             topics,
             pattern,
-            time: time.unwrap_or_default(),
-            form,
+            time: document.payload.time.clone().unwrap_or_default(),
+            form: document.payload.clock.unwrap_or_default(),
             readings,
             message_bytes,
             prefix: prefix.clone(),
@@ -297,31 +294,6 @@ fn settings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Settin
         page: document.page.as_ref().map(|table| checked.page(table)).transpose()?,
         rows_a_minute,
     })
-}
-
-fn readings(document: &Document, checked: &Checked<'_>) -> anyhow::Result<Vec<Reading>> {
-    let mut names = BTreeSet::new();
-    let mut readings = Vec::new();
-    let pointer = |path: &str, at: &str| match at.starts_with('/') {
-        true => Ok(()),
-        false => checked.refuse(path, at, "a JSON pointer", "begin it with /, as in /data/p"),
-    };
-    if let Some(time) = &document.payload.time {
-        pointer("payload.time", time)?;
-    }
-    for (i, table) in document.payload.reading.iter().enumerate() {
-        pointer(&format!("payload.reading[{i}].at"), &table.at)?;
-        if !names.insert(&table.name) {
-            checked.refuse(
-                &format!("payload.reading[{i}].name"),
-                &table.name,
-                "named once",
-                "leave one out",
-            )?;
-        }
-        readings.push(Reading { name: table.name.clone(), at: table.at.clone() });
-    }
-    Ok(readings)
 }
 
 /// The types by their names, each with a vessel, options and readings that a monitor takes.

@@ -108,9 +108,20 @@ pub(super) struct PatternTable {
 /// Where a message has its time and its readings.
 #[derive(Deserialize, JsonSchema)]
 pub(super) struct PayloadTable {
+    pub format: Option<PayloadFormat>,
     pub time: Option<String>,
     pub clock: Option<TimeForm>,
     pub reading: Vec<ReadingTable>,
+}
+
+/// How a message is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+pub(super) enum PayloadFormat {
+    #[default]
+    #[serde(rename = "json")]
+    Json,
+    #[serde(rename = "sparkplug-b")]
+    SparkplugB,
 }
 
 /// How a time is written.
@@ -134,7 +145,9 @@ pub(super) struct ReadingTable {
     /// Name of a column of a log, with its unit.
     pub name: String,
     /// JSON pointer.
-    pub at: String,
+    pub at: Option<String>,
+    /// Name of a metric of Sparkplug.
+    pub metric: Option<String>,
 }
 
 /// Where results go.

@@ -10,6 +10,7 @@ use super::config::{Broker, Settings};
 use super::keeper::Keeper;
 use super::link::{Client, FromBroker, Link, WINDOW};
 use super::mapping::Refusal;
+use super::mapping::sparkplug::Nodes;
 use super::notify::Notify;
 use super::replay::Replay;
 use super::saver::TOGETHER;
@@ -49,6 +50,7 @@ pub(super) struct Gateway<'a> {
     subscribing: usize,
     batch: Batch,
     rates: Rates,
+    nodes: Nodes,
     /// What was said of cylinders.
     said: BTreeSet<(String, Refusal)>,
     /// Why there is no connection, as it was said.
@@ -84,6 +86,7 @@ impl<'a> Gateway<'a> {
             subscribing: 0,
             batch: Batch::default(),
             rates: Rates::default(),
+            nodes: Nodes::default(),
             said: BTreeSet::new(),
             down: None,
             reload: None,

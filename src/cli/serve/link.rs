@@ -108,6 +108,15 @@ impl Client {
         Ok(())
     }
 
+    /// Sends a command: at quality of service 0, as Sparkplug has it.
+    pub(super) fn command(&self, topic: String, payload: Vec<u8>) -> anyhow::Result<()> {
+        match self {
+            Self::V4(client) => client.try_publish(topic, rumqttc::QoS::AtMostOnce, false, payload)?,
+            Self::V5(client) => client.try_publish(topic, v5::mqttbytes::QoS::AtMostOnce, false, payload)?,
+        }
+        Ok(())
+    }
+
     /// Tells the broker that a message of this connection need not come again.
     pub(super) fn acknowledge(&self, delivery: &Delivery) -> anyhow::Result<()> {
         match (self, &delivery.receipt) {

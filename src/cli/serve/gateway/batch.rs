@@ -31,7 +31,7 @@ impl Gateway<'_> {
     /// Takes in a message that was delivered.
     pub(super) fn receive(&mut self, delivery: Delivery) {
         match self.read(&delivery) {
-            Ok(input) => self.batch.inputs.push(input),
+            Ok(inputs) => self.batch.inputs.extend(inputs),
             Err(LeftOut { name, refusal, reason }) => self.refuse(&name, refusal, &reason),
         }
         self.batch.deliveries.push(delivery);

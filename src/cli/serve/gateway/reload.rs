@@ -5,6 +5,7 @@
 use super::Gateway;
 use crate::cli::serve::config::{self, Broker, Settings};
 use crate::cli::serve::link::Link;
+use crate::cli::serve::mapping::sparkplug::Nodes;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -42,6 +43,8 @@ impl Gateway<'_> {
         match self.keeper.take_over(Arc::clone(&settings)) {
             Ok(changes) => {
                 let before = std::mem::replace(&mut self.settings, settings);
+                // Births are read by the readings that there are.
+                self.nodes = Nodes::default();
                 self.connect_anew(&before, broker);
                 self.messages.say(&format!("the configuration is taken over: {changes}"));
                 self.notify.ready();

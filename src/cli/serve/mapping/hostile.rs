@@ -11,6 +11,7 @@ const GOOD: [&str; 3] = [
 fn mapping() -> Mapping {
     let reading = |name: &str, at: &str| Reading { name: name.to_owned(), at: at.to_owned() };
     Mapping {
+        format: PayloadFormat::Json,
         topics: [("plant/a".to_owned(), "A".to_owned())].into(),
         pattern: Pattern::of("train/+/gas", 3),
         time: "/t".to_owned(),

@@ -1,5 +1,5 @@
 //! From a row to a message: what `mapping` reads, written.
-use crate::cli::serve::document::TimeForm;
+use crate::cli::serve::document::{PayloadFormat, TimeForm};
 use crate::cli::serve::mapping::Mapping;
 use crate::report::rounded;
 use crate::thermal::units::Unit;
@@ -36,6 +36,11 @@ impl Payload {
     /// # Errors
     /// Two values have one place, or messages have no time.
     pub(super) fn of(mapping: &Mapping) -> anyhow::Result<Self> {
+        if mapping.format == PayloadFormat::SparkplugB {
+            bail!(
+                "a log is played in JSON, and the messages are of Sparkplug B: play it to a gateway of JSON"
+            );
+        }
         if mapping.form == TimeForm::Arrival {
             bail!(
                 "messages have no time (clock = \"arrival\"), and a log is played with its own: name a time"

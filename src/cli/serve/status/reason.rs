@@ -3,11 +3,12 @@ use crate::cli::serve::mapping::Refusal;
 
 impl Refusal {
     /// Those that have a count from the start.
-    pub(in crate::cli::serve) const ALL: [Self; 10] = [
+    pub(in crate::cli::serve) const ALL: [Self; 11] = [
         Self::UnknownTopic,
         Self::TooManyCylinders,
         Self::TooLarge,
         Self::NoJson,
+        Self::NoSparkplug,
         Self::NoTime,
         Self::NoNumber,
         Self::NoReading,
@@ -23,6 +24,7 @@ impl Refusal {
             Self::TooManyCylinders => "too_many_cylinders",
             Self::TooLarge => "too_large",
             Self::NoJson => "no_json",
+            Self::NoSparkplug => "no_sparkplug",
             Self::NoTime => "no_time",
             Self::NoNumber => "no_number",
             Self::NoReading => "no_reading",

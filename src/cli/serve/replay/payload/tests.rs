@@ -5,6 +5,7 @@ use crate::thermal::units::{Dimension, units_of};
 fn mapping(form: TimeForm, time: &str, at: &[&str]) -> Mapping {
     let reading = |at: &&str| Reading { name: String::new(), at: (*at).to_owned() };
     Mapping {
+        format: PayloadFormat::Json,
         topics: [].into(),
         pattern: None,
         time: time.to_owned(),
