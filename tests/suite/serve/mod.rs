@@ -11,6 +11,7 @@ mod refusals;
 mod reload;
 mod replay;
 mod schema;
+mod sparkplug;
 
 use crate::support::{program, run};
 use broker::{Broker, Heard, Process, listen, publish, wait};

@@ -31,6 +31,11 @@ fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
         ("name = \"B\"", "name = \"B/C\"", &["gateway.toml:20", "one level"]),
         ("depot/+/gas", "depot/#", &["gateway.toml:29", "one level +"]),
         ("time = \"/t\"\n", "", &["payload time", "arrival"]),
+        ("time = \"/t\"", "format = \"sparkplug\"", &["gateway.toml:33", "sparkplug-b"]),
+        ("time = \"/t\"", "format = \"sparkplug-b\"\ntime = \"/t\"", &["gateway.toml:32", "time and clock"]),
+        ("time = \"/t\"", "format = \"sparkplug-b\"", &["gateway.toml:3", "name the metric in metric"]),
+        ("at = \"/temps/0\"", "metric = \"T\"", &["gateway.toml:36", "format = \"sparkplug-b\""]),
+        ("at = \"/temps/0\"", "", &["gateway.toml:3", "shoulder_degc has no place"]),
         ("/temps/0", "temps/0", &["gateway.toml:36", "begin it with /"]),
         (
             "[payload]",
