@@ -122,6 +122,8 @@ pub(super) fn listen(port: u16, name: &str) -> Heard {
                     client.try_subscribe("cylwatch/#", QoS::AtLeastOnce).unwrap();
                 }
                 Ok(Event::Incoming(Packet::SubAck(_))) => _ = sender.send(()),
+                // Not from the gateway, and of any bytes.
+                Ok(Event::Incoming(Packet::Publish(publish))) if publish.topic.ends_with("/acknowledge") => {}
                 Ok(Event::Incoming(Packet::Publish(publish))) => {
                     let payload = String::from_utf8(publish.payload.to_vec()).unwrap();
                     sink.lock().unwrap().push((publish.topic, payload, publish.retain));
