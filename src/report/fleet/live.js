@@ -23,7 +23,7 @@ function tell() {
   if (lost === null && since > SILENT) { lost = heard; events.close(); connect(); }
   if (lost !== null) words.push('Connection to the gateway lost ' + ago((Date.now() - lost) / 1000) + ' ago: what stands here is of '
     + new Date(lost).toLocaleTimeString() + '. It is tried again.');
-  else words.push('Connected.', ...amiss);
+  else words.push('Connected to the gateway.', ...amiss);
   if (age !== null) words.push('Newest row: ' + ago(age + since) + ' old.');
   else if (lost === null) words.push(came ? 'The times of the rows are ahead of the gateway\'s clock.' : 'No row has come since the gateway started.');
   const text = words.join(' ');
