@@ -2,7 +2,7 @@
 const link = document.getElementById('link'), rows = new Map(fleet.rows.map(one => [one.n, one]));
 // After so many seconds without a word the connection counts as lost, and is made anew.
 const SILENT = 15, AGAIN = 5;
-let version = fleet.version, events = null, heard = Date.now(), lost = null, called = 0, age = null, amiss = [];
+let version = fleet.version, events = null, heard = Date.now(), lost = null, called = 0, age = null, came = 0, amiss = [];
 const far = time => time === null ? Infinity : time;
 function before(a, b) {
   for (let k = 0; k < 4; k++) { const x = far(a.u[k]), y = far(b.u[k]); if (x !== y) return x < y ? -1 : 1; }
@@ -23,9 +23,9 @@ function tell() {
   if (lost === null && since > SILENT) { lost = heard; events.close(); connect(); }
   if (lost !== null) words.push('Connection to the gateway lost ' + ago((Date.now() - lost) / 1000) + ' ago: what stands here is of '
     + new Date(lost).toLocaleTimeString() + '. It is tried again.');
-  else words.push('Connected.', ...amiss);
+  else words.push('Connected to the gateway.', ...amiss);
   if (age !== null) words.push('Newest row: ' + ago(age + since) + ' old.');
-  else if (lost === null) words.push('No row has come since the gateway started.');
+  else if (lost === null) words.push(came ? 'The times of the rows are ahead of the gateway\'s clock.' : 'No row has come since the gateway started.');
   const text = words.join(' ');
   if (link.textContent !== text) link.textContent = text;
   link.className = 'link' + (lost !== null || amiss.length ? ' amiss' : '');
@@ -38,7 +38,7 @@ function connect() {
     if (event.lastEventId) version = event.lastEventId; act(JSON.parse(event.data)); });
   on('rows', take);
   on('all', fresh => { rows.clear(); drawn.clear(); body.replaceChildren(); take(fresh); });
-  on('state', state => { age = state.age_s; amiss = state.amiss; tell(); });
+  on('state', state => { age = state.age_s; came = state.rows; amiss = state.amiss; tell(); });
   events.onerror = () => { if (lost === null) lost = heard; tell(); };
 }
 setInterval(tell, 1000);

@@ -74,6 +74,7 @@ fn state(site: &Site) -> Bytes {
         letters.next().map(|first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
     });
     let words: Vec<String> = words.flatten().collect();
-    let state = json!({ "age_s": site.status.newest_row_age_s(), "amiss": words });
+    let state =
+        json!({ "rows": site.status.rows.count(), "age_s": site.status.newest_row_age_s(), "amiss": words });
     format!("event: state\ndata: {state}\n\n").into()
 }

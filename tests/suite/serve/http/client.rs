@@ -1,7 +1,7 @@
 //! A client that sends what it is told, byte by byte.
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Longest wait for an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -41,8 +41,13 @@ pub(super) fn ask(port: u16, bytes: &[u8]) -> Answer {
     let mut stream = connection(port);
     // A connection that is refused may end while it is written to.
     _ = stream.write_all(bytes);
-    let mut answer = Vec::new();
-    _ = stream.read_to_end(&mut answer);
+    let (mut answer, mut piece, begin) = (Vec::new(), [0; 8192], Instant::now());
+    // A stream does not end by itself.
+    while begin.elapsed() < PATIENCE
+        && let Ok(count @ 1..) = stream.read(&mut piece)
+    {
+        answer.extend_from_slice(&piece[..count]);
+    }
     Answer::of(&answer)
 }
 
