@@ -120,6 +120,9 @@ A page of all cylinders, /metrics for Prometheus and /healthz, read-only:
   [page]
   listen = \"127.0.0.1:8742\"       # elsewhere token_file or token_env, tls_certificate_file, tls_key_file
 
+With format = \"sparkplug-b\" in [payload] a topic is GROUP/NODE/DEVICE, and a reading has
+metric = \"Gas/Pressure\" in place of at.
+
 It publishes cylwatch/NAME/verdict, estimate and alarm/ALARM, which the broker keeps, and
 cylwatch/NAME/event, at quality of service 1. A comment to cylwatch/NAME/acknowledge acknowledges
 the alarms. Rows that were accepted and events survive a kill; see book/src/serve.md.
