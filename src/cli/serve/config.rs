@@ -3,6 +3,7 @@ mod broker;
 mod certificate;
 mod page;
 mod secret;
+mod tls;
 
 use super::document::{Document, OptionsTable, TimeForm};
 use super::mapping::{Mapping, Pattern, Reading, has_filter, is_level};
@@ -20,6 +21,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+pub(super) use tls::Tls;
 
 /// All that the gateway is told.
 pub(super) struct Settings {

@@ -10,6 +10,7 @@ mod refusals;
 mod reload;
 mod replay;
 mod schema;
+mod tls;
 
 use crate::support::{program, run};
 use broker::{Broker, Heard, Process, listen, publish, wait};
