@@ -122,7 +122,9 @@ fn what_else_goes_wrong_is_said_with_its_remedy() {
             std::fs::remove_file(folder.join("said.txt")).unwrap_or_default();
             configure(folder, port, protocol, keys);
             let running = gateway(folder);
-            wait(words, || said(folder).contains(words));
+            wait(words, || said(folder).contains("; it is called again"));
+            std::thread::sleep(Duration::from_millis(1500));
+            assert!(said(folder).contains(words), "`{words}` is missing in: {}", said(folder));
             assert!(!said(folder).contains("connected"), "{}", said(folder));
             end(running, folder);
         }

@@ -1,9 +1,11 @@
 //! TLS of both protocols, and why it fails, with the remedy.
 use crate::cli::serve::config::Broker;
-use rumqttc::{TlsConfiguration, Transport, v5};
+use rumqttc::{TlsConfiguration, TlsError, Transport, v5};
 use std::error::Error;
 use std::io;
 use tokio_rustls::rustls::{self, AlertDescription, CertificateError};
+
+const OTHER_PORT: &str = "give the port where it speaks TLS, usually 8883, or leave out tls = true";
 
 /// How the broker is called.
 pub(super) fn transport(broker: &Broker) -> Transport {
@@ -15,7 +17,14 @@ pub(super) fn transport(broker: &Broker) -> Transport {
 
 /// Why a connection has ended or did not come about.
 pub(super) fn reason(error: &(dyn Error + 'static), broker: &Broker) -> String {
-    let words = of_tls(error).and_then(|error| words(error, broker));
+    let words = match of_tls(error) {
+        Some(error) => words(error, broker),
+        // A broker that takes the first bytes for nonsense ends the connection.
+        None => error.source().filter(|error| error.is::<TlsError>()).map(|error| {
+            let Broker { host, port, .. } = broker;
+            format!("{host}:{port}: it ends the connection instead of speaking TLS ({error}): {OTHER_PORT}")
+        }),
+    };
     words.unwrap_or_else(|| error.to_string())
 }
 
@@ -45,10 +54,7 @@ fn words(error: &rustls::Error, broker: &Broker) -> Option<String> {
     let (why, remedy) = match error {
         rustls::Error::InvalidCertificate(wrong) => of_certificate(wrong, host, has_own_authority),
         rustls::Error::AlertReceived(alert) => of_alert(*alert)?,
-        rustls::Error::InvalidMessage(_) => {
-            let remedy = "give the port where it does, usually 8883, or leave out tls = true";
-            ("it does not speak TLS there".to_owned(), remedy.to_owned())
-        }
+        rustls::Error::InvalidMessage(_) => ("it does not speak TLS there".to_owned(), OTHER_PORT.to_owned()),
         _ => return None,
     };
     Some(format!("{host}:{port}: {why} ({error}): {remedy}"))
@@ -147,6 +153,11 @@ mod tests {
         let (v4, v5) = (rumqttc::ConnectionError::MqttState(v4), v5::ConnectionError::MqttState(v5));
         for told in [reason(&v4, &broker()), reason(&v5, &broker())] {
             assert!(told.contains("give client_certificate_file"), "{told}");
+        }
+        let eof = || TlsError::Io(io::ErrorKind::UnexpectedEof.into());
+        let (v4, v5) = (rumqttc::ConnectionError::Tls(eof()), v5::ConnectionError::Tls(eof()));
+        for told in [reason(&v4, &broker()), reason(&v5, &broker())] {
+            assert!(told.contains("leave out tls = true"), "{told}");
         }
         let other = rumqttc::ConnectionError::Io(io::Error::other("a cable"));
         assert_eq!(reason(&other, &broker()), "I/O: a cable");
