@@ -58,6 +58,7 @@ pub(super) struct ServeArguments {
 /// Runs until a signal comes, or a replay has ended.
 pub(super) fn run(arguments: ServeArguments, messages: &Messages) -> anyhow::Result<()> {
     let (mut settings, broker) = config::read(&arguments.config)?;
+    broker.caution().iter().for_each(|words| messages.caution(words));
     let replay = Replay::of(&arguments.replay, (&settings, &broker), messages)?;
     if arguments.check {
         messages.say(&format!("{} can be used", arguments.config.display()));
@@ -97,6 +98,7 @@ has its time and its readings:
   [broker]
   host = \"localhost\"              # port = 1883, protocol = \"5\" or \"3.1.1\", user, password_file or
   client_id = \"depot-7\"           # password_env, keep_alive_s = 30, session_expiry_d = 7
+                                    # tls = true (port 8883), ca_file, client_certificate_file, client_key_file
   [store]
   folder = \"/var/lib/cylwatch\"    # states and journal; save_every_min = 10
   [[type]]

@@ -4,6 +4,7 @@ mod certificate;
 mod page;
 mod payload;
 mod secret;
+mod tls;
 
 use super::document::{Document, OptionsTable};
 use super::mapping::{Mapping, Pattern, has_filter, is_level};
@@ -21,6 +22,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+pub(super) use tls::Tls;
 
 /// All that the gateway is told.
 pub(super) struct Settings {

@@ -25,7 +25,13 @@ pub(super) struct Document {
 #[derive(Deserialize, JsonSchema)]
 pub(super) struct BrokerTable {
     pub host: String,
+    /// 1883, or 8883 with TLS.
     pub port: Option<u16>,
+    pub tls: Option<bool>,
+    /// Certificates of authorities, PEM; those of the system if it is not given.
+    pub ca_file: Option<String>,
+    pub client_certificate_file: Option<String>,
+    pub client_key_file: Option<String>,
     pub protocol: Option<Protocol>,
     pub client_id: String,
     pub user: Option<String>,

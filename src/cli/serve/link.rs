@@ -1,6 +1,8 @@
 //! The connection to the broker, on a thread of its own; no other file names the MQTT client.
 //!
 //! Each connection has a client of its own: what had not arrived when one was lost is the outbox's to send again. Messages are acknowledged by hand.
+mod tls;
+
 use super::config::Broker;
 use super::document::Protocol;
 use rumqttc::v5::mqttbytes::v5::{
@@ -174,6 +176,7 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
     let mut options = rumqttc::MqttOptions::new(&broker.client_id, &broker.host, broker.port);
     options.set_clean_session(false).set_manual_acks(true).set_keep_alive(broker.keep_alive);
     options.set_max_packet_size(LARGEST_OF_ALL, LARGEST_OF_ALL).set_inflight(WINDOW);
+    options.set_transport(tls::transport(broker));
     if let Some((user, password)) = &broker.login {
         options.set_credentials(user, password);
     }
@@ -200,7 +203,7 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
             },
             Ok(Ok(rumqttc::Event::Outgoing(Outgoing::Publish(packet)))) => FromBroker::Sent(packet),
             Ok(Ok(rumqttc::Event::Outgoing(_))) => continue,
-            Ok(Err(error)) => return Some(error.to_string()),
+            Ok(Err(error)) => return Some(tls::reason(&error, broker)),
             Err(_) => return None,
         };
         sender.send(said).ok()?;
@@ -216,7 +219,7 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
         max_packet_size: Some(LARGEST as u32),
         ..ConnectProperties::new()
     });
-    options.set_outgoing_inflight_upper_limit(WINDOW);
+    options.set_outgoing_inflight_upper_limit(WINDOW).set_transport(tls::transport(broker));
     if let Some((user, password)) = &broker.login {
         options.set_credentials(user, password);
     }
@@ -249,7 +252,7 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
             },
             Ok(Ok(v5::Event::Outgoing(Outgoing::Publish(packet)))) => FromBroker::Sent(packet),
             Ok(Ok(v5::Event::Outgoing(_))) => continue,
-            Ok(Err(error)) => return Some(error.to_string()),
+            Ok(Err(error)) => return Some(tls::reason(&error, broker)),
             Err(_) => return None,
         };
         sender.send(said).ok()?;

@@ -18,6 +18,11 @@ pub(super) fn wait(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
+/// A port that is free.
+pub(super) fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
 /// A process that ends with the test.
 pub(super) struct Process(pub Child);
 
@@ -39,18 +44,25 @@ impl Drop for Process {
 pub(super) struct Broker {
     pub port: u16,
     process: Process,
+    /// Lines of its configuration beside those of the port.
+    more: String,
 }
 
 impl Broker {
     /// Begins on a free port; `None`, and a message, where Mosquitto is not installed.
-    #[allow(clippy::print_stderr)]
     pub(super) fn begin(folder: &Path) -> Option<Self> {
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let Some(process) = broker(folder, port) else {
+        Self::begin_with(folder, "")
+    }
+
+    /// The same with more lines of configuration.
+    #[allow(clippy::print_stderr)]
+    pub(super) fn begin_with(folder: &Path, more: &str) -> Option<Self> {
+        let port = free_port();
+        let Some(process) = broker(folder, port, more) else {
             eprintln!("skipped: mosquitto is not installed");
             return None;
         };
-        Some(Self { port, process })
+        Some(Self { port, process, more: more.to_owned() })
     }
 
     /// Kills it.
@@ -67,13 +79,13 @@ impl Broker {
     pub(super) fn pause(&mut self, folder: &Path, time: Duration) {
         self.process.kill();
         std::thread::sleep(time);
-        self.process = broker(folder, self.port).unwrap();
+        self.process = broker(folder, self.port, &self.more).unwrap();
     }
 }
 
-fn broker(folder: &Path, port: u16) -> Option<Process> {
+fn broker(folder: &Path, port: u16, more: &str) -> Option<Process> {
     let text = format!(
-        "listener {port} 127.0.0.1\nallow_anonymous true\nmax_queued_messages 0\nmax_inflight_messages 200\n"
+        "listener {port} 127.0.0.1\nallow_anonymous true\nmax_queued_messages 0\nmax_inflight_messages 200\n{more}"
     );
     std::fs::write(folder.join("mosquitto.conf"), text).unwrap();
     let child = ["mosquitto", "/usr/sbin/mosquitto"].iter().find_map(|program| {

@@ -12,6 +12,7 @@ mod reload;
 mod replay;
 mod schema;
 mod sparkplug;
+mod tls;
 
 use crate::support::{program, run};
 use broker::{Broker, Heard, Process, listen, publish, wait};

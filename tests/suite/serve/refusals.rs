@@ -10,6 +10,7 @@ fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
     for (name, token) in [("long", "correct-horse-battery-staple"), ("short", "sesame")] {
         std::fs::write(folder.path().join(name), token).unwrap();
     }
+    std::fs::write(folder.path().join("ca.pem"), include_str!("tls/authority.pem")).unwrap();
     let right = configuration(1883, "5");
     std::fs::write(folder.path().join("gateway.toml"), &right).unwrap();
     assert_eq!(run(folder.path(), &check).code, Some(0));
@@ -18,6 +19,37 @@ fn a_wrong_configuration_is_one_message_with_line_and_remedy() {
         ("\"5\"", "\"4\"", &["gateway.toml:5", "protocol", "3.1.1"]),
         ("client_id =", "password = \"sesame\"\nclient_id =", &["gateway.toml:6", "password_file"]),
         ("client_id =", "password_env = \"NOT_THERE\"\nclient_id =", &["NOT_THERE"]),
+        ("client_id =", "ca_file = \"ca.pem\"\nclient_id =", &["gateway.toml:6", "ca.pem", "add tls = true"]),
+        (
+            "client_id =",
+            "tls = false\nclient_key_file = \"long\"\nclient_id =",
+            &["gateway.toml:7", "client_key_file", "add tls = true"],
+        ),
+        (
+            "client_id =",
+            "tls = true\nca_file = \"nowhere.pem\"\nclient_id =",
+            &["gateway.toml:7", "nowhere.pem", "not usable"],
+        ),
+        (
+            "client_id =",
+            "tls = true\nca_file = \"long\"\nclient_id =",
+            &["gateway.toml:7", "long", "not usable", "no certificate in PEM"],
+        ),
+        (
+            "client_id =",
+            "tls = true\nca_file = \"ca.pem\"\nclient_key_file = \"long\"\nclient_id =",
+            &["gateway.toml:2", "client_certificate_file", "both or none"],
+        ),
+        (
+            "client_id =",
+            "tls = true\nca_file = \"ca.pem\"\nclient_certificate_file = \"ca.pem\"\nclient_key_file = \"short\"\nclient_id =",
+            &["gateway.toml:9", "short", "not usable"],
+        ),
+        (
+            "host = \"127.0.0.1\"",
+            "host = \"[::1]\"\ntls = true\nca_file = \"ca.pem\"",
+            &["gateway.toml:3", "[::1]", "a name or an IPv4 address"],
+        ),
         ("client_id =", "keep_alive_h = 30\nclient_id =", &["gateway.toml:6", "keep_alive_h", "30"]),
         ("save_every_s = 1", "save_every_s = 0", &["gateway.toml:9", "save_every_s", "between"]),
         ("vessel =", "silent_after_min = 0\nvessel =", &["gateway.toml:12", "silent_after_min", "between"]),

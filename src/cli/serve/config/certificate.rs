@@ -1,7 +1,11 @@
-//! The certificate of the page. It is read again when its files have changed, as certificates are renewed more often than gateways are started.
+//! A certificate that the gateway shows, to who looks at the page or to the broker. It is read again when its files have changed, as certificates are
+//! renewed more often than gateways are started.
+use super::Checked;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
+use tokio_rustls::rustls::SignatureScheme;
+use tokio_rustls::rustls::client::ResolvesClientCert;
 use tokio_rustls::rustls::crypto::ring;
 use tokio_rustls::rustls::pki_types::pem::PemObject;
 use tokio_rustls::rustls::pki_types::{CertificateDer, PrivateKeyDer};
@@ -13,9 +17,9 @@ const LOOK: Duration = Duration::from_secs(60);
 
 /// Files of a chain and its key, in PEM.
 #[derive(Clone, Debug)]
-pub(super) struct Files {
-    pub certificate: PathBuf,
-    pub key: PathBuf,
+struct Files {
+    certificate: PathBuf,
+    key: PathBuf,
 }
 
 impl Files {
@@ -58,7 +62,7 @@ pub(super) struct Certificate {
 impl Certificate {
     /// # Errors
     /// Names the file that cannot be used.
-    pub(super) fn of(files: Files) -> Result<Self, (PathBuf, anyhow::Error)> {
+    fn of(files: Files) -> Result<Self, (PathBuf, anyhow::Error)> {
         let changed = files.changed();
         let known = Known { certified: Arc::new(files.read()?), changed, looked: Instant::now() };
         Ok(Self { files, known: Mutex::new(known) })
@@ -83,6 +87,33 @@ impl Certificate {
 impl ResolvesServerCert for Certificate {
     fn resolve(&self, _: ClientHello<'_>) -> Option<Arc<CertifiedKey>> {
         Some(self.now(LOOK))
+    }
+}
+
+impl ResolvesClientCert for Certificate {
+    fn resolve(&self, _: &[&[u8]], _: &[SignatureScheme]) -> Option<Arc<CertifiedKey>> {
+        Some(self.now(LOOK))
+    }
+
+    fn has_certs(&self) -> bool {
+        true
+    }
+}
+
+impl Checked<'_> {
+    /// The certificate at paths such as `page.tls_certificate_file` and `page.tls_key_file`.
+    pub(super) fn certificate(
+        &self,
+        paths: &str,
+        certificate: &str,
+        key: &str,
+    ) -> anyhow::Result<Certificate> {
+        let [certificate, key] = [certificate, key].map(|file| self.folder.join(file));
+        Certificate::of(Files { certificate: certificate.clone(), key }).map_err(|(file, error)| {
+            let path =
+                format!("{paths}{}", if file == certificate { "certificate_file" } else { "key_file" });
+            error.context(format!("{}: {} is not usable", self.at(&path), file.display()))
+        })
     }
 }
 

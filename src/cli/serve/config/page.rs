@@ -1,6 +1,5 @@
 //! Where the page listens, and what it asks for: a token and TLS wherever it is not this machine alone.
 use super::Checked;
-use super::certificate::{Certificate, Files};
 use crate::cli::serve::document::PageTable;
 use anyhow::bail;
 use sha2::{Digest, Sha256};
@@ -88,12 +87,7 @@ impl Checked<'_> {
     }
 
     fn tls(&self, certificate: &str, key: &str) -> anyhow::Result<Arc<ServerConfig>> {
-        let [certificate, key] = [certificate, key].map(|file| self.folder.join(file));
-        let files = Files { certificate: certificate.clone(), key };
-        let certificate = Certificate::of(files).map_err(|(file, error)| {
-            let key = if file == certificate { "page.tls_certificate_file" } else { "page.tls_key_file" };
-            error.context(format!("{}: {} is not usable", self.at(key), file.display()))
-        })?;
+        let certificate = self.certificate("page.tls_", certificate, key)?;
         let mut configuration = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
             .with_safe_default_protocol_versions()?
             .with_no_client_auth()

@@ -61,6 +61,7 @@ impl Gateway<'_> {
     /// Another broker, or other topics.
     fn connect_anew(&mut self, before: &Settings, broker: Broker) {
         if broker != self.broker {
+            broker.caution().iter().for_each(|words| self.messages.caution(words));
             if let Some(client) = self.client.take() {
                 client.disconnect();
             }

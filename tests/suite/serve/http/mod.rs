@@ -4,9 +4,9 @@ mod client;
 mod hostile;
 mod secret;
 
-use super::broker::{Broker, Process, listen, publish, wait};
+use super::broker::{Broker, Process, free_port, listen, publish, wait};
 use super::{MINUTES, NAMES, begun, configuration, end, gateway, messages, said, time, wait_for};
-use client::{Events, ask, free_port, get, metric, request};
+use client::{Events, ask, get, metric, request};
 use serde_json::Value;
 use std::path::Path;
 
