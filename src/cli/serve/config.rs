@@ -1,4 +1,5 @@
 //! Settings from the configuration, checked: whatever is wrong with it is told before the broker is called.
+mod assigned;
 mod broker;
 mod certificate;
 mod page;
@@ -6,20 +7,16 @@ mod payload;
 mod secret;
 mod tls;
 
-use super::document::{Document, OptionsTable};
+use super::document::Document;
 use super::mapping::{Mapping, Pattern, has_filter, is_level};
-use crate::cli::fleet::{as_columns, vessel_beside};
-use crate::cli::monitor::Steps;
-use crate::cli::monitor_steps;
-use crate::report::Input;
 use crate::thermal::ThermalError;
 use crate::thermal::document::{self, Places, check};
-use anyhow::{Context, anyhow, bail};
+use anyhow::{Context, bail};
+pub(super) use assigned::Assigned;
 pub(super) use broker::Broker;
 pub(super) use page::{Page, Token};
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 pub(super) use tls::Tls;
@@ -49,58 +46,6 @@ const MESSAGE_BYTES: u32 = 1 << 20;
 
 /// Without a row for so long a cylinder is silent, unless the configuration says otherwise, s.
 const SILENT_AFTER_S: f64 = 3600.0;
-
-/// The call of `monitor` for a cylinder, and when it is silent.
-#[derive(Clone, PartialEq)]
-pub(super) struct Assigned {
-    call: Vec<OsString>,
-    /// SHA-256 of the files that it names: they may change while the gateway runs.
-    files: Vec<String>,
-    pub silent_after: Duration,
-}
-
-impl Assigned {
-    /// Of tables at their paths; a later one counts more.
-    fn new(
-        vessel: &str,
-        tables: &[(String, &OptionsTable)],
-        silent_after: Duration,
-        checked: &Checked<'_>,
-    ) -> anyhow::Result<Self> {
-        let mut words: BTreeMap<String, String> = BTreeMap::new();
-        let vessel = vessel_beside(checked.folder, vessel);
-        let mut files = vec![PathBuf::from(&vessel)];
-        for (path, table) in tables {
-            let Value::Object(values) = serde_json::to_value(table)? else { continue };
-            for (field, value) in values {
-                files.extend(value.as_str().map(|file| checked.folder.join(file)));
-                match checked.word(&format!("{path}.{field}"), &value) {
-                    Some(word) => _ = words.insert(field, word),
-                    None if value == Value::Bool(false) => _ = words.remove(&field),
-                    None => {}
-                }
-            }
-        }
-        let call = ["monitor".into(), vessel.into(), "<messages>".into()];
-        let call = call.into_iter().chain(words.into_values().map(OsString::from)).collect();
-        // A vessel of the program is no file.
-        let files = files.iter().filter_map(|file| std::fs::read(file).ok());
-        let files = files.map(|bytes| Input::of("", &bytes).sha256).collect();
-        Ok(Self { call, files, silent_after })
-    }
-
-    /// The vessel as it is named, without its folder.
-    pub(super) fn vessel(&self) -> String {
-        let name = self.call.get(1).and_then(|vessel| Path::new(vessel).file_name());
-        name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
-    }
-
-    /// A monitor that has not begun.
-    pub(super) fn monitor(&self) -> anyhow::Result<Steps> {
-        monitor_steps(&self.call, Vec::new())
-            .map_err(|error| anyhow!("{}", as_columns(&format!("{error:#}"))))
-    }
-}
 
 /// The file while it is checked.
 struct Checked<'a> {

@@ -46,8 +46,9 @@ pub(super) struct Gateway<'a> {
     link: Link,
     /// The connection that there is.
     client: Option<Client>,
-    /// Subscriptions that the broker has not answered.
+    /// Subscriptions that the broker has not answered, and what is said when it has.
     subscribing: usize,
+    greeting: String,
     batch: Batch,
     rates: Rates,
     nodes: Nodes,
@@ -84,6 +85,7 @@ impl<'a> Gateway<'a> {
             signals,
             client: None,
             subscribing: 0,
+            greeting: String::new(),
             batch: Batch::default(),
             rates: Rates::default(),
             nodes: Nodes::default(),
@@ -163,7 +165,10 @@ impl<'a> Gateway<'a> {
         self.keeper.silence.begin(Instant::now());
         self.keeper.outbox.connected(is_known);
         match client.subscribe(&self.settings.mapping.filters()) {
-            Ok(answers) => self.subscribing = answers,
+            Ok(answers) => {
+                self.subscribing = answers;
+                "connected to the broker".clone_into(&mut self.greeting);
+            }
             Err(error) => self.messages.caution(&format!("the topics cannot be subscribed to: {error:#}")),
         }
         self.client = Some(client);
@@ -179,7 +184,7 @@ impl<'a> Gateway<'a> {
         }
         self.subscribing = self.subscribing.saturating_sub(1);
         if self.subscribing == 0 {
-            self.messages.say("connected to the broker");
+            self.messages.say(&self.greeting);
             self.replay.iter_mut().for_each(Replay::subscribed);
         }
     }

@@ -45,8 +45,10 @@ impl Gateway<'_> {
                 let before = std::mem::replace(&mut self.settings, settings);
                 // Births are read by the readings that there are.
                 self.nodes = Nodes::default();
-                self.connect_anew(&before, broker);
-                self.messages.say(&format!("the configuration is taken over: {changes}"));
+                self.greeting = format!("the configuration is taken over: {changes}");
+                if !self.connect_anew(&before, broker) {
+                    self.messages.say(&self.greeting);
+                }
                 self.notify.ready();
             }
             Err(error) => self.stays(&error),
@@ -58,8 +60,8 @@ impl Gateway<'_> {
         self.notify.ready();
     }
 
-    /// Another broker, or other topics.
-    fn connect_anew(&mut self, before: &Settings, broker: Broker) {
+    /// Another broker, or other topics; `true`: the broker will answer new subscriptions.
+    fn connect_anew(&mut self, before: &Settings, broker: Broker) -> bool {
         if broker != self.broker {
             broker.caution().iter().for_each(|words| self.messages.caution(words));
             if let Some(client) = self.client.take() {
@@ -68,7 +70,7 @@ impl Gateway<'_> {
             self.drop_batch();
             self.link = Link::new(broker.clone());
             self.broker = broker;
-            return;
+            return false;
         }
         let (old, new) = (before.mapping.filters(), self.settings.mapping.filters());
         let only = |one: &[String], other: &[String]| -> Vec<String> {
@@ -83,5 +85,6 @@ impl Gateway<'_> {
                 Err(_) => client.disconnect(),
             }
         }
+        self.client.is_some() && self.subscribing > 0
     }
 }
