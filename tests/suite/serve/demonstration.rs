@@ -1,4 +1,5 @@
 //! The depot of the tutorial.
+use super::broker::free_port;
 use super::*;
 
 #[test]
@@ -18,6 +19,7 @@ fn the_depot_of_the_tutorial_is_made_and_played_and_its_leak_is_found() {
     }
     let text = std::fs::read_to_string(source.join("gateway.toml")).unwrap();
     let text = text.replace("[broker]", &format!("[broker]\nport = {}", broker.port));
+    let text = text.replace("127.0.0.1:8742", &format!("127.0.0.1:{}", free_port()));
     std::fs::write(folder.join("gateway.toml"), text).unwrap();
     let heard = listen(broker.port, "listener");
     let played = run(folder, &["serve", "gateway.toml", "--replay", "logs", "--speed", "max"]);
