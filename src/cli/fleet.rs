@@ -22,6 +22,7 @@ pub use kept::FleetOutcome;
 pub(super) use kept::kept;
 #[cfg(feature = "serve")]
 pub(super) use logs::{files, name_of};
+#[cfg(feature = "serve")]
 pub(super) use run::LAST_EVENTS;
 pub use tally::FleetProgress;
 #[cfg(feature = "serve")]
