@@ -196,14 +196,7 @@ pub(super) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// Writes some files, each so that it appears complete or not at all. They are on disk together, which takes hardly longer than one.
 #[cfg(feature = "serve")]
 pub(super) fn write_files(files: &[(&Path, &[u8])]) -> Vec<anyhow::Result<()>> {
-    let begun: Vec<_> = files
-        .iter()
-        .map(|(path, bytes)| {
-            let mut file = temporary(folder_of(path))?;
-            file.write_all(bytes)?;
-            Ok(file)
-        })
-        .collect();
+    let begun: Vec<_> = files.iter().map(|(path, bytes)| filled(path, bytes)).collect();
     let persist = |(begun, (path, _)): (std::io::Result<NamedTempFile>, &(&Path, &[u8]))| {
         let persisted = begun.and_then(|file| {
             file.as_file().sync_all()?;
@@ -244,9 +237,15 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-fn complete(path: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
+/// A file beside its place with all its bytes, which need not be on disk.
+fn filled(path: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
     let mut file = temporary(folder_of(path))?;
     file.write_all(bytes)?;
+    Ok(file)
+}
+
+fn complete(path: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile> {
+    let file = filled(path, bytes)?;
     file.as_file().sync_all()?;
     Ok(file)
 }

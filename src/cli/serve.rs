@@ -12,11 +12,13 @@
 //! | `gateway` | the loop |
 //! | `notify` | what the service manager hears |
 //! | `replay` | recorded logs, played to the broker |
-//! | `status` | what the loop tells of itself |
+//! | `status`, `board` | what the loop tells of itself, and shows of the cylinders |
 //! | `http` | the page, metrics and health checks |
 mod alarms;
+mod board;
 mod config;
 mod document;
+mod file;
 mod gateway;
 mod http;
 mod journal;

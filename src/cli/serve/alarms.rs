@@ -6,13 +6,13 @@
 //!
 //! The conditions are in a file of their own. A change is written before it is published, and what the file has is published again at the
 //! start, so that no change is lost. A file that is damaged is set aside: every cylinder is then told anew at its next row.
+use super::file::{read, set_aside};
 use crate::cli::monitor::{ALARM, Told};
 use crate::cli::output::write_file;
 use crate::cli::steps::{decoded, encoded};
 use crate::detector::monitor::alarm::{Alarm, Condition, OffNormal, Timing, Transition};
 use crate::report::Clock;
 use crate::report::monitor::{transition_line, transition_text};
-use anyhow::Context;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -31,6 +31,8 @@ pub(super) enum Kind {
 }
 
 impl Kind {
+    const ALL: [Self; 2] = [Self::Silent, Self::StateLost];
+
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Silent => "silent",
@@ -48,7 +50,7 @@ struct Standing {
 }
 
 /// Alarms by cylinder and kind; those that are not there are normal.
-type Standings = BTreeMap<(String, Kind), Standing>;
+type Standings = BTreeMap<String, BTreeMap<Kind, Standing>>;
 
 /// All alarms of the gateway.
 pub(super) struct Alarms {
@@ -62,16 +64,11 @@ pub(super) struct Alarms {
 impl Alarms {
     /// From a file, if there is one; and why it was set aside.
     pub(super) fn open(path: &Path) -> anyhow::Result<(Self, Option<String>)> {
-        let read = match std::fs::read(path) {
-            Ok(bytes) => Some(decoded::<Standings>(&bytes)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
-            Err(error) => return Err(error).with_context(|| format!("{} cannot be read", path.display())),
-        };
-        let (standing, damage) = match read {
+        let (standing, damage) = match read(path)?.map(|bytes| decoded::<Standings>(&bytes)) {
             None => (Standings::new(), None),
             Some(Ok(standing)) => (standing, None),
             Some(Err(error)) => {
-                super::keeper::set_aside(path)?;
+                set_aside(path)?;
                 (Standings::new(), Some(format!("{}: {error:#}", path.display())))
             }
         };
@@ -81,7 +78,8 @@ impl Alarms {
 
     /// What may not have arrived before the start.
     pub(super) fn told(&self) -> impl Iterator<Item = (&str, &Told)> {
-        self.standing.iter().map(|((name, _), standing)| (name.as_str(), &standing.told))
+        let all = self.standing.iter();
+        all.flat_map(|(name, of)| of.values().map(|standing| (name.as_str(), &standing.told)))
     }
 
     /// Whether an alarm was raised at this time, whatever has become of it.
@@ -91,20 +89,21 @@ impl Alarms {
 
     /// Names of the alarms of a cylinder that are active.
     pub(super) fn active(&self, name: &str) -> Vec<&'static str> {
-        let kinds = [Kind::Silent, Kind::StateLost].into_iter();
-        kinds.filter(|kind| self.condition(name, *kind).active).map(Kind::name).collect()
+        let is_active =
+            |kind: &Kind| self.standing(name, *kind).is_some_and(|standing| standing.condition.active);
+        Kind::ALL.into_iter().filter(is_active).map(Kind::name).collect()
     }
 
     /// Whether a row says that a cylinder is not silent, where it was or may have been.
     pub(super) fn must_clear(&self, name: &str) -> bool {
-        let silent = self.standing.get(&(name.to_owned(), Kind::Silent));
+        let silent = self.standing(name, Kind::Silent);
         silent.map_or(self.is_unsure, |standing| standing.condition.active)
     }
 
     /// Sets an alarm to what is seen at a time since 1970, s; says what changed.
     pub(super) fn set(&mut self, name: &str, kind: Kind, active: bool, time_s: f64) -> Vec<Told> {
         let mut before = self.condition(name, kind);
-        if self.is_unsure && !active && !self.standing.contains_key(&(name.to_owned(), kind)) {
+        if self.is_unsure && !active && self.standing(name, kind).is_none() {
             // It may have been told before.
             before = rules().step(before, time_s, Some(true)).0;
         }
@@ -115,7 +114,7 @@ impl Alarms {
     /// Acknowledges and confirms all alarms of a cylinder.
     pub(super) fn acknowledge(&mut self, name: &str, comment: &str) -> Vec<Told> {
         let mut told = Vec::new();
-        for kind in [Kind::Silent, Kind::StateLost] {
+        for kind in Kind::ALL {
             let condition = self.condition(name, kind);
             let time_s = condition.last_s.unwrap_or_default();
             if let Ok((_, transition)) = condition.acknowledge(time_s, false, comment) {
@@ -133,10 +132,11 @@ impl Alarms {
         if self.is_written {
             return Ok(());
         }
-        let is_needed =
-            |name: &str, standing: &Standing| standing.condition.retain() || self.is_unsure || keeps(name);
-        let kept = self.standing.iter().filter(|((name, _), standing)| is_needed(name, standing));
-        let kept: Standings = kept.map(|(key, standing)| (key.clone(), standing.clone())).collect();
+        let mut kept = self.standing.clone();
+        kept.retain(|name, of| {
+            of.retain(|_, standing| standing.condition.retain() || self.is_unsure || keeps(name));
+            !of.is_empty()
+        });
         write_file(&self.path, &encoded(&kept)?)?;
         (self.standing, self.is_written) = (kept, true);
         Ok(())
@@ -144,22 +144,21 @@ impl Alarms {
 
     /// Forgets a cylinder.
     pub(super) fn forget(&mut self, name: &str) {
-        let before = self.standing.len();
-        self.standing.retain(|(of, _), _| of != name);
-        self.is_written &= before == self.standing.len();
+        self.is_written &= self.standing.remove(name).is_none();
+    }
+
+    fn standing(&self, name: &str, kind: Kind) -> Option<&Standing> {
+        self.standing.get(name)?.get(&kind)
     }
 
     fn condition(&self, name: &str, kind: Kind) -> Condition {
-        self.standing
-            .get(&(name.to_owned(), kind))
-            .map(|standing| standing.condition.clone())
-            .unwrap_or_default()
+        self.standing(name, kind).map(|standing| standing.condition.clone()).unwrap_or_default()
     }
 
     fn changed(&mut self, name: &str, kind: Kind, transition: &Transition) -> Told {
         let told = told(kind.name(), transition);
         let standing = Standing { condition: transition.condition.clone(), told: told.clone() };
-        self.standing.insert((name.to_owned(), kind), standing);
+        self.standing.entry(name.to_owned()).or_default().insert(kind, standing);
         self.is_written = false;
         told
     }

@@ -9,7 +9,6 @@
 //! | `routes`, `content` | answers |
 //! | `events` | the stream of rows that have changed |
 //! | `metrics` | the text that Prometheus reads |
-mod board;
 mod connections;
 mod content;
 mod events;
@@ -24,7 +23,6 @@ use super::config::Page;
 use super::status::Status;
 use crate::report::Provenance;
 use anyhow::Context;
-pub(super) use board::{Board, REFRESH};
 use limits::Counts;
 use std::net::TcpListener;
 use std::path::PathBuf;

@@ -23,6 +23,7 @@ mod tests;
 
 use super::alarms::{Alarms, Kind};
 use super::config::{Assigned, Settings};
+use super::file::{read, set_aside};
 use super::journal::{Entry, Journal, Segment};
 use super::mapping::{Accepted, Refusal};
 use super::outbox::Outbox;
@@ -41,7 +42,7 @@ use anyhow::{Context, bail};
 use show::{Notes, Showing};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -214,23 +215,5 @@ impl<'a> Keeper<'a> {
     /// Number of cylinders.
     pub(super) fn len(&self) -> usize {
         self.cylinders.len()
-    }
-}
-
-/// Gives a file, if it is there, a name that nothing reads.
-pub(super) fn set_aside(file: &Path) -> anyhow::Result<()> {
-    if let Some(bytes) = read(file)? {
-        let mut aside = file.to_owned().into_os_string();
-        aside.push(format!(".{}.aside", &Input::of("", &bytes).sha256[..12]));
-        std::fs::rename(file, &aside).with_context(|| format!("{} cannot be renamed", file.display()))?;
-    }
-    Ok(())
-}
-
-fn read(file: &Path) -> anyhow::Result<Option<Vec<u8>>> {
-    match std::fs::read(file) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(error).with_context(|| format!("{} cannot be read", file.display())),
     }
 }

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 /// A cylinder.
 struct Watch {
-    /// When its last row came, or when rows could come again.
+    /// When its last row came, or it was taken up.
+    heard: Instant,
+    /// The same, or when rows could come again.
     since: Instant,
     after: Duration,
     is_told: bool,
@@ -26,8 +28,12 @@ pub(super) struct Silence {
 impl Silence {
     /// Watches a cylinder from now on.
     pub(super) fn watch(&mut self, name: &str, after: Duration, now: Instant) {
-        let watch =
-            self.watches.entry(name.to_owned()).or_insert(Watch { since: now, after, is_told: false });
+        let watch = self.watches.entry(name.to_owned()).or_insert(Watch {
+            heard: now,
+            since: now,
+            after,
+            is_told: false,
+        });
         watch.after = after;
     }
 
@@ -39,13 +45,18 @@ impl Silence {
     /// A row of a cylinder has come.
     pub(super) fn heard(&mut self, name: &str, now: Instant) {
         if let Some(watch) = self.watches.get_mut(name) {
-            (watch.since, watch.is_told) = (now, false);
+            (watch.heard, watch.since, watch.is_told) = (now, now, false);
         }
     }
 
     /// Rows can come again: nobody has been silent before.
     pub(super) fn begin(&mut self, now: Instant) {
         self.watches.values_mut().for_each(|watch| watch.since = watch.since.max(now));
+    }
+
+    /// When the most silent one had a row, or was taken up.
+    pub(super) fn longest(&self) -> Option<Instant> {
+        self.watches.values().map(|watch| watch.heard).min()
     }
 
     /// Those that have fallen silent since this was asked last.
@@ -85,7 +96,9 @@ mod tests {
         silence.begin(at(29));
         assert!(silence.fallen(at(38)).is_empty());
         assert_eq!(silence.fallen(at(59)), ["A", "B"]);
+        assert_eq!(silence.longest(), Some(begin), "that it could not be heard is no row");
         silence.forget("B");
+        assert_eq!(silence.longest(), Some(at(21)));
         silence.watch("A", Duration::from_secs(1), at(59));
         silence.heard("A", at(60));
         assert_eq!(silence.fallen(at(61)), ["A"]);

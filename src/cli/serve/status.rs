@@ -2,7 +2,7 @@
 mod histogram;
 mod reason;
 
-use super::http::Board;
+use super::board::Board;
 use super::mapping::Refusal;
 pub(super) use histogram::{BOUNDS_S, Histogram};
 use jiff::Timestamp;

@@ -102,7 +102,7 @@ fn hostile_messages_disturb_no_other_cylinder() {
 
 /// `HOSTILE=1000000 cargo test --features serve --test suite -- --ignored --nocapture serve::hostile`.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: HOSTILE=1000000 cargo test --features serve --test suite -- --ignored --nocapture serve::hostile"]
 fn a_million_hostile_messages_disturb_no_other_cylinder() {
     withstands("5", asked("HOSTILE", 1_000_000));
 }

@@ -67,7 +67,7 @@ fn time_verdicts(port: u16, flight: &Arc<Mutex<Flight>>) {
 
 /// `CYLINDERS=5000 MINUTES=30 cargo test --release --features serve --test suite -- --ignored --nocapture serve::load`.
 #[test]
-#[ignore = "half an hour"]
+#[ignore = "half an hour: cargo test --release --features serve --test suite -- --ignored --nocapture serve::load"]
 #[allow(clippy::print_stdout)]
 fn many_cylinders_with_a_row_each_10_s() {
     let (cylinders, minutes) = (asked("CYLINDERS", 5000), asked("MINUTES", 30));

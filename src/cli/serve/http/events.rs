@@ -1,7 +1,7 @@
 //! The stream of events of a page: rows that have changed, and how the gateway is. Each part is made when the one before was taken, so that a slow
 //! client gets the newest, and nothing waits for it.
 use super::Site;
-use super::board::{Change, REFRESH};
+use crate::cli::serve::board::{Change, REFRESH};
 use hyper::body::Bytes;
 use serde_json::json;
 use std::sync::Arc;

@@ -1,10 +1,10 @@
 //! What is answered.
 use super::Site;
-use super::board::Shown;
 use super::connections::Place;
 use super::content::{Content, refusal, text};
 use super::limits::{Limit, PAGE_BYTES};
 use super::{events, guard, metrics};
+use crate::cli::serve::board::Shown;
 use crate::report::fleet::{Cylinder, live_page, sort_by_urgency};
 use hyper::body::Bytes;
 use hyper::header::{
@@ -136,7 +136,7 @@ fn health(site: &Site) -> Response<Content> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::serve::http::Board;
+    use crate::cli::serve::board::Board;
 
     #[test]
     fn a_page_has_the_cylinders_that_there_is_room_for() {

@@ -2,7 +2,7 @@
 use super::*;
 use crate::cli::fleet::LAST_EVENTS;
 use crate::cli::serve::alarms::SEVERITY;
-use crate::cli::serve::http::REFRESH;
+use crate::cli::serve::board::REFRESH;
 use crate::detector::monitor::Outcome;
 use crate::report::fleet;
 use jiff::Timestamp;
@@ -21,8 +21,6 @@ pub(super) struct Notes {
     goes_on: bool,
     /// Whether a row has come.
     has_rows: bool,
-    /// When the last row came, or the cylinder was taken up.
-    heard: Instant,
     events: usize,
     /// The last events, in words.
     last_events: VecDeque<String>,
@@ -31,14 +29,7 @@ pub(super) struct Notes {
 impl Notes {
     pub(super) fn of(steps: &Steps) -> Self {
         let goes_on = steps.has_begun();
-        Self {
-            is_new: true,
-            goes_on,
-            has_rows: false,
-            heard: Instant::now(),
-            events: 0,
-            last_events: VecDeque::new(),
-        }
+        Self { is_new: true, goes_on, has_rows: false, events: 0, last_events: VecDeque::new() }
     }
 
     /// Those of a monitor that goes on with other options.
@@ -48,7 +39,7 @@ impl Notes {
 
     /// A row came.
     pub(super) fn hear(&mut self) {
-        (self.is_new, self.has_rows, self.heard) = (true, true, Instant::now());
+        (self.is_new, self.has_rows) = (true, true);
     }
 
     /// Something happened.
@@ -119,7 +110,7 @@ impl Keeper<'_> {
         }
         let now = Instant::now();
         self.showing.looked = Some(now);
-        Some(self.cylinders.values().map(|cylinder| cylinder.notes.heard).min().unwrap_or(now))
+        Some(self.silence.longest().unwrap_or(now))
     }
 }
 

@@ -9,17 +9,7 @@ const GOOD: [&str; 3] = [
 ];
 
 fn mapping() -> Mapping {
-    let reading = |name: &str, at: &str| Reading { name: name.to_owned(), at: at.to_owned() };
-    Mapping {
-        format: PayloadFormat::Json,
-        topics: [("plant/a".to_owned(), "A".to_owned())].into(),
-        pattern: Pattern::of("train/+/gas", 3),
-        time: "/t".to_owned(),
-        form: TimeForm::Seconds,
-        readings: vec![reading("pressure_bar", "/data/p"), reading("shoulder_degc", "/data/temps/0")],
-        message_bytes: 200,
-        prefix: "out".to_owned(),
-    }
+    Mapping { message_bytes: 200, prefix: "out".to_owned(), ..super::tests::mapping(TimeForm::Seconds) }
 }
 
 /// What can happen to bytes.

@@ -1,6 +1,6 @@
 use super::*;
 
-fn mapping(form: TimeForm) -> Mapping {
+pub(super) fn mapping(form: TimeForm) -> Mapping {
     let reading = |name: &str, at: &str| Reading { name: name.to_owned(), at: at.to_owned() };
     Mapping {
         format: PayloadFormat::Json,

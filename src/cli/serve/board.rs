@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Between two looks at what has changed.
-pub(in crate::cli::serve) const REFRESH: Duration = Duration::from_secs(2);
+pub(super) const REFRESH: Duration = Duration::from_secs(2);
 /// Rows of one event.
 const CHUNK: usize = 100;
 
@@ -37,7 +37,7 @@ struct Content {
 
 /// All of them.
 #[derive(Default)]
-pub(in crate::cli::serve) struct Board {
+pub(super) struct Board {
     watching: AtomicUsize,
     content: Mutex<Content>,
 }
@@ -68,12 +68,12 @@ impl Board {
     }
 
     /// Whether somebody looks.
-    pub(in crate::cli::serve) fn is_watched(&self) -> bool {
+    pub(super) fn is_watched(&self) -> bool {
         self.watching.load(Ordering::Relaxed) > 0
     }
 
     /// Shows a cylinder.
-    pub(in crate::cli::serve) fn put(&self, cylinder: Cylinder) {
+    pub(super) fn put(&self, cylinder: Cylinder) {
         let mut content = self.content();
         content.version += 1;
         let (name, version) = (cylinder.name.clone(), content.version);
@@ -81,7 +81,7 @@ impl Board {
     }
 
     /// All cylinders are up to date; those that are gone go here, too.
-    pub(in crate::cli::serve) fn complete(&self, count: usize, is_there: impl Fn(&str) -> bool) {
+    pub(super) fn complete(&self, count: usize, is_there: impl Fn(&str) -> bool) {
         let mut content = self.content();
         content.complete = Some(Instant::now());
         if content.rows.len() != count {
