@@ -56,6 +56,8 @@ pub(super) struct Gateway<'a> {
     said: BTreeSet<(String, Refusal)>,
     /// Why there is no connection, as it was said.
     down: Option<String>,
+    /// Whether it was said that the broker acknowledges nothing.
+    is_mute: bool,
     saving: Saving,
     /// A configuration that waits to be taken over.
     reload: Option<Reload>,
@@ -91,6 +93,7 @@ impl<'a> Gateway<'a> {
             nodes: Nodes::default(),
             said: BTreeSet::new(),
             down: None,
+            is_mute: false,
             reload: None,
             notify: Notify::of_environment(),
             replay,
@@ -141,6 +144,7 @@ impl<'a> Gateway<'a> {
                         self.messages.caution(&format!("the broker does not take a message: {reason}"));
                     }
                     self.keeper.outbox.arrived(packet);
+                    self.is_mute = false;
                     self.send();
                 }
                 FromBroker::Up(client, is_known) => self.up(client, is_known),
@@ -157,7 +161,33 @@ impl<'a> Gateway<'a> {
                 }
             }
         }
+        if self.batch.len() < self.room() {
+            // All that it has said was heard.
+            self.look_for_a_mute_broker();
+        }
         self.take();
+    }
+
+    /// Leaves a broker that has acknowledged nothing for as long as it may not answer: what was on its way is sent again.
+    fn look_for_a_mute_broker(&mut self) {
+        let patience = self.broker.keep_alive;
+        if self.client.is_none() || self.keeper.outbox.unacknowledged(Instant::now()) < patience {
+            return;
+        }
+        if !std::mem::replace(&mut self.is_mute, true) {
+            let seconds = patience.as_secs();
+            let words =
+                format!("the broker has acknowledged nothing for {seconds} s: the connection begins anew");
+            self.messages.caution(&words);
+        }
+        self.leave();
+    }
+
+    /// Ends the connection if there is one.
+    fn leave(&mut self) {
+        if let Some(client) = self.client.take() {
+            client.disconnect();
+        }
     }
 
     fn up(&mut self, client: Client, is_known: bool) {
@@ -218,9 +248,7 @@ impl<'a> Gateway<'a> {
             if let Err(error) = client.publish(message.topic, message.payload, message.retain) {
                 // The connection ends, and the next one sends all that has not arrived.
                 self.messages.caution(&format!("a message cannot be sent: {error:#}"));
-                client.disconnect();
-                self.client = None;
-                return;
+                return self.leave();
             }
             if let Some(since) = self.keeper.outbox.since() {
                 self.keeper.status.publish.observe(since.elapsed());

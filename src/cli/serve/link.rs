@@ -30,6 +30,8 @@ const DELIVERIES: u16 = 256;
 const FILTERS: usize = 100;
 /// Between two calls of a broker that does not answer.
 const PAUSE: Duration = Duration::from_secs(1);
+/// Why a connection ended that was ended here.
+const LEFT: &str = "it was left";
 
 /// What the broker says.
 pub(super) enum FromBroker {
@@ -202,6 +204,8 @@ fn of_v4(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                 _ => continue,
             },
             Ok(Ok(rumqttc::Event::Outgoing(Outgoing::Publish(packet)))) => FromBroker::Sent(packet),
+            // Whether the broker hears of it or not.
+            Ok(Ok(rumqttc::Event::Outgoing(Outgoing::Disconnect))) => return Some(LEFT.to_owned()),
             Ok(Ok(rumqttc::Event::Outgoing(_))) => continue,
             Ok(Err(error)) => return Some(tls::reason(&error, broker)),
             Err(_) => return None,
@@ -251,6 +255,7 @@ fn of_v5(broker: &Broker, sender: &SyncSender<FromBroker>) -> Option<String> {
                 _ => continue,
             },
             Ok(Ok(v5::Event::Outgoing(Outgoing::Publish(packet)))) => FromBroker::Sent(packet),
+            Ok(Ok(v5::Event::Outgoing(Outgoing::Disconnect))) => return Some(LEFT.to_owned()),
             Ok(Ok(v5::Event::Outgoing(_))) => continue,
             Ok(Err(error)) => return Some(tls::reason(&error, broker)),
             Err(_) => return None,

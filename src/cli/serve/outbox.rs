@@ -3,7 +3,7 @@
 //! Events keep their order and are never left out. Of verdict and estimate the newest waits alone: an older one would be replaced at the broker
 //! at once. Nobody may push rows' events without end at a broker that never acknowledges: see [`Outbox::is_full`].
 use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Events that have not arrived, beyond which no more rows are taken in; those of the rows of one batch may come on top.
 const EVENTS: usize = 10_000;
@@ -42,6 +42,8 @@ pub(super) struct Outbox {
     causes: BTreeMap<u64, Instant>,
     /// All of them.
     due: usize,
+    /// When the broker last acknowledged a message, or had acknowledged all.
+    acknowledged: Option<Instant>,
 }
 
 impl Outbox {
@@ -86,6 +88,9 @@ impl Outbox {
             return None;
         }
         let number = self.waiting.pop_first()?;
+        if self.handed.is_empty() && self.sent.is_empty() {
+            self.acknowledged = Some(Instant::now());
+        }
         let message = self.messages.get(&number)?.clone();
         if self.replaceable.get(&message.topic) == Some(&number) {
             self.replaceable.remove(&message.topic);
@@ -108,6 +113,7 @@ impl Outbox {
 
     /// A packet has arrived.
     pub(super) fn arrived(&mut self, packet: u16) {
+        self.acknowledged = Some(Instant::now());
         let Some(message) = self.sent.remove(&packet).and_then(|number| self.messages.remove(&number)) else {
             return;
         };
@@ -155,6 +161,14 @@ impl Outbox {
         self.events.contains_key(cylinder)
     }
 
+    /// How long the broker has acknowledged nothing of what is on its way to it.
+    pub(super) fn unacknowledged(&self, now: Instant) -> Duration {
+        if self.handed.is_empty() && self.sent.is_empty() {
+            return Duration::ZERO;
+        }
+        self.acknowledged.map_or(Duration::ZERO, |last| now.saturating_duration_since(last))
+    }
+
     /// Whether so many events have not arrived that rows must wait.
     pub(super) fn is_full(&self) -> bool {
         self.due >= EVENTS
@@ -196,6 +210,26 @@ mod tests {
         outbox.sent(1);
         outbox.arrived(1);
         assert!(!outbox.is_full());
+    }
+
+    #[test]
+    fn only_what_is_on_its_way_can_be_missing_an_acknowledgement() {
+        let mut outbox = Outbox::default();
+        let in_a_minute = Instant::now() + Duration::from_secs(60);
+        let is_missed = |outbox: &Outbox| outbox.unacknowledged(in_a_minute) > Duration::from_secs(50);
+        outbox.push(verdict("1"));
+        assert!(!is_missed(&outbox));
+        outbox.hand(1).unwrap();
+        assert!(is_missed(&outbox), "it was handed to the link");
+        outbox.sent(1);
+        assert!(is_missed(&outbox));
+        outbox.arrived(1);
+        assert!(!is_missed(&outbox));
+        assert_eq!(outbox.unacknowledged(Instant::now()), Duration::ZERO);
+        outbox.push(verdict("2"));
+        outbox.hand(1).unwrap();
+        outbox.connected(true);
+        assert!(!is_missed(&outbox), "another connection");
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod hardship;
 mod hostile;
 mod http;
 mod load;
+mod mute;
 #[cfg(target_os = "linux")]
 mod notify;
 mod refusals;

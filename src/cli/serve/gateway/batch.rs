@@ -48,9 +48,7 @@ impl Gateway<'_> {
             self.messages.caution("the broker acknowledges no events: rows wait until it does");
         }
         if self.batch.len() >= HELD {
-            if let Some(client) = self.client.take() {
-                client.disconnect();
-            }
+            self.leave();
             self.drop_batch();
         }
     }

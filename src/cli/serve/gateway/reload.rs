@@ -64,9 +64,7 @@ impl Gateway<'_> {
     fn connect_anew(&mut self, before: &Settings, broker: Broker) -> bool {
         if broker != self.broker {
             broker.caution().iter().for_each(|words| self.messages.caution(words));
-            if let Some(client) = self.client.take() {
-                client.disconnect();
-            }
+            self.leave();
             self.drop_batch();
             self.link = Link::new(broker.clone());
             self.broker = broker;
