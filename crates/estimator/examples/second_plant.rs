@@ -10,8 +10,7 @@ use std::convert::Infallible;
 
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::consistency::{EnsembleNees, Significance};
-use cylwatch_estimator::filter::{Bank, BankEngine, Belief, Linearisation, Outcome, Plant, StateSpace};
-use cylwatch_estimator::filter::{Workspace, smooth};
+use cylwatch_estimator::filter::{self, Bank, BankEngine, Belief, Linearisation, Outcome, Plant, StateSpace};
 use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -28,6 +27,7 @@ pub(crate) const SAMPLE_S: f64 = 60.0;
 const TIMES: [usize; 4] = [60, 180, 330, 480];
 
 type Linear<'a> = Option<&'a mut Linearisation>;
+type Nees = [EnsembleNees; 2];
 /// The tank with the part of the leak's noise that a member supposes: 0 of a tight one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tank(f64);
@@ -89,7 +89,7 @@ impl Plant for Tank {
 /// A bank of a tight member and a leaking one.
 pub(crate) fn bank(tank: &mut Tank, engine: &BankEngine) -> Bank<Tank> {
     let prior = DMatrix::from_fn(5, 5, |i, j| if i == j { SD[i] * SD[i] } else { 0.0 });
-    let members = vec![(0.0, prior.clone()), (1.0, prior)];
+    let members = [(0.0, prior.clone()), (1.0, prior)];
     let mut bank = Bank::new(tank, engine, &MEAN, &members).expect("a covariance");
     bank.set(0, 3, 0.0, 0.0);
     bank
@@ -114,13 +114,9 @@ pub(crate) fn truth(seed: u64, leak: f64) -> Vec<([f64; 5], [f64; 2])> {
 }
 
 /// Errors of the leaking member, filtered and smoothed; readings refused; whether the tight member is excluded at the end.
-pub(crate) fn watch(
-    seed: u64,
-    leak: f64,
-    nees: &mut [EnsembleNees; 2],
-) -> Result<(usize, bool), EstimatorError> {
+pub(crate) fn watch(seed: u64, leak: f64, nees: &mut Nees) -> Result<(usize, bool), EstimatorError> {
     let (mut tank, truth, mut refused) = (Tank::default(), truth(seed, leak), 0);
-    let (mut bank, mut work) = (bank(&mut tank, &BankEngine::Extended), Workspace::new(&tank));
+    let (mut bank, mut work) = (bank(&mut tank, &BankEngine::Extended), filter::Workspace::new(&tank));
     let mut records = vec![bank.record(1, &tank)];
     for (_, z) in &truth {
         let Ok(()) = bank.predict(&mut tank, &mut work, SAMPLE_S);
@@ -128,7 +124,7 @@ pub(crate) fn watch(
         records.push(bank.record(1, &tank));
         refused += bank.innovations(1).iter().filter(|of| of.outcome == Outcome::Rejected).count();
     }
-    let smoothed = smooth(&records);
+    let smoothed = filter::smooth(&records);
     for (index, k) in TIMES.into_iter().enumerate() {
         for (which, x, p) in [(0, &records[k].x, &records[k].p), (1, &smoothed[k].x, &smoothed[k].p)] {
             let error: Vec<f64> = x.iter().zip(truth[k - 1].0).map(|(x, truth)| x - truth).collect();
@@ -138,7 +134,7 @@ pub(crate) fn watch(
     Ok((refused, Belief::of(bank.moments(0, 2), bank.moments(1, 2)).is_excluded()))
 }
 
-pub(crate) fn ensembles() -> [EnsembleNees; 2] {
+pub(crate) fn ensembles() -> Nees {
     [0, 1].map(|_| EnsembleNees::new(&TIMES.map(|k| SAMPLE_S * k as f64), 5))
 }
 

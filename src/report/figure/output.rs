@@ -61,7 +61,7 @@ impl Picture {
             area.present().map_err(|error| ReportError::Drawing { reason: error.to_string() })?;
         }
         let (columns, rows) = (width as usize / over, height as usize / over);
-        let pixels = shrink(&fine, width as usize, (columns, rows), over);
+        let pixels = shrink(&fine, columns, over);
         encode(&pixels, (columns as u32, rows as u32), &provenance.lines())
     }
 
@@ -116,18 +116,19 @@ fn escaped(text: &str) -> String {
 }
 
 /// Mean of every square of `over` by `over` pixels: what makes edges smooth.
-fn shrink(fine: &[u8], width: usize, (columns, rows): (usize, usize), over: usize) -> Vec<u8> {
-    let mut out = Vec::with_capacity(columns * rows * 3);
-    for row in 0..rows {
-        for column in 0..columns {
-            for channel in 0..3 {
-                let pixels = (0..over * over).map(|k| {
-                    let (y, x) = (row * over + k / over, column * over + k % over);
-                    u32::from(fine[(y * width + x) * 3 + channel])
-                });
-                out.push((pixels.sum::<u32>() / (over * over) as u32) as u8);
+fn shrink(fine: &[u8], columns: usize, over: usize) -> Vec<u8> {
+    let (fine, _) = fine.as_chunks::<3>();
+    let mut out = Vec::with_capacity(3 * fine.len() / (over * over));
+    for rows in fine.chunks_exact(columns * over * over) {
+        let mut sums = vec![[0_u32; 3]; columns];
+        for row in rows.chunks_exact(columns * over) {
+            for (sum, square) in sums.iter_mut().zip(row.chunks_exact(over)) {
+                for &[red, green, blue] in square {
+                    *sum = [sum[0] + u32::from(red), sum[1] + u32::from(green), sum[2] + u32::from(blue)];
+                }
             }
         }
+        out.extend(sums.as_flattened().iter().map(|sum| (sum / (over * over) as u32) as u8));
     }
     out
 }

@@ -3,7 +3,7 @@ use super::Model;
 use super::gas::GasPoint;
 use super::inputs::{FilmInput, Inputs};
 use crate::transfer::outside::{Body, convection_w_m2_k, radiation_w_m2};
-use crate::transfer::{HalfCell, SurfaceBalance, solve_surface};
+use crate::transfer::{FilmSeries, HalfCell, SurfaceBalance, solve_surface};
 use crate::vessel::Valve;
 use crate::wall::mesh::TOP;
 
@@ -39,10 +39,11 @@ impl Model {
         let cell = self.mesh.inner_cell(column);
         let half = self.half_cell(cell, self.mesh.columns[column].inner_shape_m, temperature_k[cell]);
         solve_surface(&half, |surface_k| {
-            self.grid.contacts[column].iter().fold((0.0, 0.0), |(heat, slope), contact| {
-                let flux = self.contact_flux(contact, surface_k, points, jet_w_m2_k);
-                (heat + contact.area_m2 * flux.flux_w_m2, slope + contact.area_m2 * flux.per_surface_k)
-            })
+            let mut sum = FilmSeries::linear(0.0, 0.0);
+            for contact in &self.grid.contacts[column] {
+                sum.add(contact.area_m2, &self.contact_series(contact, surface_k, points, jet_w_m2_k));
+            }
+            sum
         })
     }
 
@@ -54,7 +55,11 @@ impl Model {
         solve_surface(&half, |surface_k| {
             let place = self.exposure(self.above_middle[column], inputs);
             let (heat, slope) = self.loss(&self.body, 1.0, &place, surface_k, inputs);
-            (geometry.outer_area_m2 * heat - sun, geometry.outer_area_m2 * slope)
+            let (heat_w, slope_w_k) = (geometry.outer_area_m2 * heat - sun, geometry.outer_area_m2 * slope);
+            match (inputs.film, inputs.radiation_k) {
+                (FilmInput::Coefficient(_), None) => FilmSeries::linear(heat_w, slope_w_k),
+                _ => FilmSeries::first_order(heat_w, slope_w_k),
+            }
         })
     }
 

@@ -8,6 +8,7 @@ use super::supply::{SourceVessel, Supply};
 use super::well_mixed::{Node, WellMixed};
 use crate::ThermalError;
 use crate::fluid::Real;
+use crate::transfer::FilmSeries;
 use crate::transfer::inside::{InsideFlux, jet_film_w_m2_k};
 use crate::wall::mesh::Facing;
 
@@ -177,6 +178,17 @@ impl Model {
     ) -> InsideFlux {
         let gas = &points[contact.cell];
         self.inside.flux(contact.facing, surface_k, gas.temperature_k, gas.pressure_pa, jet_w_m2_k)
+    }
+
+    pub(super) fn contact_series(
+        &self,
+        contact: &Contact,
+        surface_k: f64,
+        points: &[GasPoint],
+        jet_w_m2_k: f64,
+    ) -> FilmSeries {
+        let gas = &points[contact.cell];
+        self.inside.series(contact.facing, surface_k, gas.temperature_k, gas.pressure_pa, jet_w_m2_k)
     }
 
     pub(super) fn boundary<'a>(&'a self, x: &'a [f64], inputs: &Inputs, open: &'a [bool]) -> Boundary<'a> {

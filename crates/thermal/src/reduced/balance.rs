@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 use super::gas::{GasState, Slope};
 use super::{ReducedModel, Unknowns, capacity_ratio};
-use crate::transfer::{HalfCell, solve_surface, solve_surface_from};
+use crate::transfer::{HalfCell, solve_surface_from};
 use crate::wall::conduction::link_flow;
 use crate::wall::mesh::{Facing, TOP};
 
@@ -87,8 +87,8 @@ impl ReducedModel {
             let everywhere = column.outer_area_m2 * film_w_m2_k;
             let slope = everywhere * (1.0 + unknowns.film_slope * height);
             let half = self.half_cell(x[node], column.outer_shape_m);
-            let face =
-                solve_surface(&half, |surface_k| (slope * (surface_k - unknowns.air_k) - sun_w, slope));
+            let film = |surface_k: f64| (slope * (surface_k - unknowns.air_k) - sun_w, slope, ());
+            let (face, ()) = solve_surface_from(&half, x[node], film);
             rate[node] -= face.heat_w;
             let Some(j) = jacobian.as_deref_mut() else { continue };
             j[(node, node)] -= face.heat_per_node_k;

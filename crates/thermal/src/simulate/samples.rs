@@ -57,7 +57,7 @@ impl Samples {
             temperature_k: outputs.iter().map(|o| o.sources[k].0).collect(),
             pressure_pa: outputs.iter().map(|o| o.sources[k].1).collect(),
         };
-        Trajectory {
+        let mut trajectory = Trajectory {
             vessel: vessel.clone(),
             scenario: scenario.clone(),
             gas_mean_k: pick(|o| o.gas_mean_k),
@@ -70,15 +70,21 @@ impl Samples {
             mass_kg: pick(|o| o.mass_kg),
             outflow_kg_s: pick(|o| o.outflow_kg_s),
             heat_to_gas_w: pick(|o| o.heat_to_gas_w),
-            gas_cells_k: outputs.iter().map(|o| o.gas_cells_k.clone()).collect(),
-            wall_outer_k: outputs.iter().map(|o| o.wall_outer_k.clone()).collect(),
-            wall_inner_k: outputs.into_iter().map(|o| o.wall_inner_k).collect(),
+            gas_cells_k: Vec::with_capacity(outputs.len()),
+            wall_outer_k: Vec::with_capacity(outputs.len()),
+            wall_inner_k: Vec::with_capacity(outputs.len()),
             time_s,
             ambient_k,
             places,
             events: Vec::new(),
             ledger: Ledger::default(),
             statistics: SolverStatistics::default(),
+        };
+        for output in outputs {
+            trajectory.gas_cells_k.push(output.gas_cells_k);
+            trajectory.wall_outer_k.push(output.wall_outer_k);
+            trajectory.wall_inner_k.push(output.wall_inner_k);
         }
+        trajectory
     }
 }

@@ -21,6 +21,8 @@ use crate::cache::{GridCache, GridIndex};
 use crate::fluid::Fluid;
 #[cfg(feature = "simulate")]
 use crate::fluid::Real;
+#[cfg(feature = "simulate")]
+use crate::transfer::{FilmSeries, LAST_STEP_K};
 use crate::vessel::InsideFilm;
 use crate::wall::mesh::Facing;
 
@@ -36,6 +38,11 @@ const PLATE_STIRRED: (f64, f64) = (0.15, 1.0 / 3.0);
 const PLATE_RESTING: (f64, f64) = (0.27, 0.25);
 /// Plates count with a quarter of the length.
 const LN_QUARTER: f64 = -2.0 * core::f64::consts::LN_2;
+/// How far the series of a film holds to 1e-12, parts of the difference of the temperatures, and K, by its groups.
+#[cfg(feature = "simulate")]
+const HOLDS: f64 = 5e-3;
+#[cfg(feature = "simulate")]
+const GROUPS_HOLD_K: f64 = 0.01;
 /// Spacing of the grid in temperature, K.
 const STEP_K: f64 = 4.0;
 /// Spacing of the grid in the logarithm of the pressure.
@@ -96,6 +103,10 @@ fn catmull_rom(u: f64) -> ([f64; 4], [f64; 4]) {
     )
 }
 
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
+}
+
 /// Whole part, rounded down, and the rest. Without a call of the library for the floor, which costs as much as the interpolation.
 fn cell_of(x: f64) -> (i32, f64) {
     let truncated = x as i32;
@@ -136,12 +147,7 @@ impl FilmGrid {
     pub(crate) fn groups(&self, temperature_k: f64, pressure_pa: f64) -> FilmGroups {
         let (i, u) = cell_of(temperature_k / STEP_K);
         let (j, v) = cell_of(self.ln_pressure(pressure_pa) / STEP_LN_P);
-        let ((wt, dt), (wp, dp), index) = (catmull_rom(u), catmull_rom(v), (i, j));
-        let mut patches = self.patches.borrow_mut();
-        if patches.get(index).is_none() {
-            patches.put(index, self.patch(index));
-        }
-        let Some(patch) = patches.get(index) else { unreachable!("the patch was just put in") };
+        let ((wt, dt), (wp, dp)) = (catmull_rom(u), catmull_rom(v));
         // First along the temperature, four pressures side by side.
         let interpolate = |values: &[[f64; 4]; 4]| {
             let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
@@ -151,10 +157,39 @@ impl FilmGrid {
                     slope[b] += d * row[b];
                 }
             }
-            let dot = |a: &[f64; 4], b: &[f64; 4]| (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
             [dot(&value, &wp), dot(&slope, &wp) / STEP_K, dot(&value, &dp) / STEP_LN_P]
         };
-        FilmGroups { ln_k: interpolate(&patch[0]), ln_r: interpolate(&patch[1]) }
+        self.on_patch((i, j), |[ln_k, ln_r]| FilmGroups { ln_k: interpolate(ln_k), ln_r: interpolate(ln_r) })
+    }
+
+    /// `ln k` and `ln R` with their first two derivatives along temperature, 1/K and 1/K², and how far it is to the next cell, where the second one
+    /// jumps, K.
+    #[cfg(feature = "simulate")]
+    fn along_temperature(&self, temperature_k: f64, pressure_pa: f64) -> ([[f64; 3]; 2], f64) {
+        let (i, u) = cell_of(temperature_k / STEP_K);
+        let (j, v) = cell_of(self.ln_pressure(pressure_pa) / STEP_LN_P);
+        let ((wt, dt), (wp, _)) = (catmull_rom(u), catmull_rom(v));
+        let second = [2.0 - 3.0 * u, 9.0 * u - 5.0, 4.0 - 9.0 * u, 3.0 * u - 1.0];
+        let groups = self.on_patch((i, j), |patch| {
+            patch.map(|group| {
+                let at_pressure = group.map(|row| dot(&row, &wp));
+                [
+                    dot(&at_pressure, &wt),
+                    dot(&at_pressure, &dt) / STEP_K,
+                    dot(&at_pressure, &second) / (STEP_K * STEP_K),
+                ]
+            })
+        });
+        (groups, STEP_K * u.min(1.0 - u))
+    }
+
+    fn on_patch<T>(&self, index: GridIndex, read: impl FnOnce(&Patch) -> T) -> T {
+        let mut patches = self.patches.borrow_mut();
+        if patches.get(index).is_none() {
+            patches.put(index, self.patch(index));
+        }
+        let Some(patch) = patches.get(index) else { unreachable!("the patch was just put in") };
+        read(patch)
     }
 
     /// Surfaces of one vessel ask for one pressure, one after the other.
@@ -227,22 +262,14 @@ impl InsideConvection {
         jet_w_m2_k: f64,
     ) -> InsideFlux {
         let theta = surface_k - gas_k;
-        let natural = match (self.law, facing) {
-            (InsideFilm::Coefficient { film_w_m2_k }, _) => InsideFlux {
+        let natural = match self.natural_law(facing, theta) {
+            NaturalLaw::Coefficient(film_w_m2_k) => InsideFlux {
                 flux_w_m2: film_w_m2_k * theta,
                 per_surface_k: film_w_m2_k,
                 per_gas_k: -film_w_m2_k,
                 per_pressure: 0.0,
             },
-            (InsideFilm::Rayleigh { factor, exponent, multiplier }, Facing::Side) => {
-                self.natural(multiplier * factor, exponent, self.ln_length, theta, surface_k, pressure_pa)
-            }
-            (InsideFilm::Rayleigh { multiplier, .. }, plate) => {
-                let stirs = (theta > 0.0) == (plate == Facing::Floor);
-                let (factor, exponent) = if stirs { PLATE_STIRRED } else { PLATE_RESTING };
-                let ln_length = self.ln_length + LN_QUARTER;
-                self.natural(multiplier * factor, exponent, ln_length, theta, surface_k, pressure_pa)
-            }
+            NaturalLaw::Rayleigh(law) => self.natural(law, theta, surface_k, pressure_pa),
         };
         InsideFlux {
             flux_w_m2: natural.flux_w_m2 + jet_w_m2_k * theta,
@@ -252,21 +279,54 @@ impl InsideConvection {
         }
     }
 
-    /// `c k L^(3n-1) R^n (theta^2 + theta_0^2)^(n/2) theta` and its derivatives.
-    fn natural(
+    /// The same about a surface temperature, for a square metre, W, W/K, W/K², W/K³.
+    #[cfg(feature = "simulate")]
+    pub(crate) fn series(
         &self,
-        factor: f64,
-        n: f64,
-        ln_length: f64,
-        theta: f64,
+        facing: Facing,
         surface_k: f64,
+        gas_k: f64,
         pressure_pa: f64,
-    ) -> InsideFlux {
+        jet_w_m2_k: f64,
+    ) -> FilmSeries {
+        let theta = surface_k - gas_k;
+        let mut series = match self.natural_law(facing, theta) {
+            NaturalLaw::Coefficient(film_w_m2_k) => FilmSeries::linear(film_w_m2_k * theta, film_w_m2_k),
+            NaturalLaw::Rayleigh(law) => {
+                let series = self.natural_series(law, theta, surface_k, pressure_pa);
+                // A plate has another law on the other side of the gas.
+                let side_k = if facing == Facing::Side { f64::INFINITY } else { theta.abs() };
+                FilmSeries { holds_k: series.holds_k.min(side_k), ..series }
+            }
+        };
+        series.heat_w[0] += jet_w_m2_k * theta;
+        series.heat_w[1] += jet_w_m2_k;
+        series
+    }
+
+    /// What a surface has that is so much warmer than the gas.
+    fn natural_law(&self, facing: Facing, theta: f64) -> NaturalLaw {
+        let InsideFilm::Rayleigh { factor, exponent, multiplier } = self.law else {
+            let InsideFilm::Coefficient { film_w_m2_k } = self.law else { unreachable!("two laws") };
+            return NaturalLaw::Coefficient(film_w_m2_k);
+        };
+        let (factor, n, ln_length) = match facing {
+            Facing::Side => (factor, exponent, self.ln_length),
+            plate => {
+                let stirs = (theta > 0.0) == (plate == Facing::Floor);
+                let (factor, exponent) = if stirs { PLATE_STIRRED } else { PLATE_RESTING };
+                (factor, exponent, self.ln_length + LN_QUARTER)
+            }
+        };
+        NaturalLaw::Rayleigh(Rayleigh { factor: multiplier * factor, n, ln_length })
+    }
+
+    /// `c k L^(3n-1) R^n (theta^2 + theta_0^2)^(n/2) theta` and its derivatives.
+    fn natural(&self, law: Rayleigh, theta: f64, surface_k: f64, pressure_pa: f64) -> InsideFlux {
+        let n = law.n;
         let groups = self.grid.groups(surface_k - 0.5 * theta, pressure_pa);
         let square = theta * theta + FLAT_BELOW_K * FLAT_BELOW_K;
-        let ln_film =
-            groups.ln_k[0] + n * groups.ln_r[0] + (3.0 * n - 1.0) * ln_length + 0.5 * n * libm::log(square);
-        let film = factor * libm::exp(ln_film);
+        let film = law.film_w_m2_k(groups.ln_k[0], groups.ln_r[0], square);
         let flux_w_m2 = film * theta;
         let per_theta = film * (1.0 + n * theta * theta / square);
         let per_film_k = flux_w_m2 * (groups.ln_k[1] + n * groups.ln_r[1]);
@@ -276,6 +336,60 @@ impl InsideConvection {
             per_gas_k: -per_theta + 0.5 * per_film_k,
             per_pressure: flux_w_m2 * (groups.ln_k[2] + n * groups.ln_r[2]) / pressure_pa,
         }
+    }
+
+    /// The same as a series: `phi(theta) e^(a x + b x²/2)` with `phi = (theta^2 + theta_0^2)^(n/2) theta` and what the groups add, at half the
+    /// change of the surface. The fifth derivative of `phi` is below 8 `phi' / (theta^2 + theta_0^2)^2`.
+    #[cfg(feature = "simulate")]
+    fn natural_series(&self, law: Rayleigh, theta: f64, surface_k: f64, pressure_pa: f64) -> FilmSeries {
+        let n = law.n;
+        let ([ln_k, ln_r], room_k) = self.grid.along_temperature(surface_k - 0.5 * theta, pressure_pa);
+        let square = theta * theta + FLAT_BELOW_K * FLAT_BELOW_K;
+        let film = law.film_w_m2_k(ln_k[0], ln_r[0], square);
+        let (a, b) = (0.5 * (ln_k[1] + n * ln_r[1]), 0.25 * (ln_k[2] + n * ln_r[2]));
+        let (part, t2) = (theta / square, theta * theta / square);
+        let phi = [
+            theta,
+            1.0 + n * t2,
+            n * part * (3.0 + (n - 2.0) * t2),
+            n / square * (3.0 + (n - 2.0) * t2 * (6.0 + (n - 4.0) * t2)),
+            n * (n - 2.0) * part / square * (15.0 + (n - 4.0) * t2 * (10.0 + (n - 6.0) * t2)),
+        ];
+        let e = [a, a * a + b, a * (a * a + 3.0 * b), a * a * (a * a + 6.0 * b) + 3.0 * b * b];
+        let by = [
+            phi[0],
+            phi[1] + phi[0] * e[0],
+            phi[2] + 2.0 * phi[1] * e[0] + phi[0] * e[1],
+            phi[3] + 3.0 * (phi[2] * e[0] + phi[1] * e[1]) + phi[0] * e[2],
+            phi[4] + 4.0 * (phi[3] * e[0] + phi[1] * e[2]) + 6.0 * phi[2] * e[1] + phi[0] * e[3],
+        ];
+        // The film's temperature moves half as far as the surface.
+        let holds_k = (HOLDS * libm::sqrt(square)).min(GROUPS_HOLD_K).min(2.0 * room_k).max(LAST_STEP_K);
+        FilmSeries { heat_w: by.map(|value| film * value), holds_k }
+    }
+}
+
+/// The law of a surface.
+enum NaturalLaw {
+    /// Film coefficient, W/(m² K).
+    Coefficient(f64),
+    Rayleigh(Rayleigh),
+}
+
+/// `Nu = factor Ra^n`.
+#[derive(Clone, Copy)]
+struct Rayleigh {
+    factor: f64,
+    n: f64,
+    ln_length: f64,
+}
+
+impl Rayleigh {
+    /// Film coefficient, W/(m² K), of groups and `theta^2 + theta_0^2`, K².
+    fn film_w_m2_k(self, ln_k: f64, ln_r: f64, square: f64) -> f64 {
+        let Self { factor, n, ln_length } = self;
+        let ln_film = ln_k + n * ln_r + (3.0 * n - 1.0) * ln_length + 0.5 * n * libm::log(square);
+        factor * libm::exp(ln_film)
     }
 }
 
@@ -361,6 +475,49 @@ mod tests {
         let film = film("nitrogen");
         let rest = film.flux(Facing::Side, 288.0, 288.0, 2e7, 0.0);
         assert!(rest.flux_w_m2 == 0.0 && rest.per_surface_k > 10.0 && rest.per_surface_k < 20.0);
+    }
+
+    /// Against Newton's method on the film itself, to the last step: behind metal and behind plastic, from rest to a large difference.
+    #[cfg(feature = "simulate")]
+    #[test]
+    fn one_expansion_gives_the_heat_of_the_film_to_its_bound() {
+        use crate::transfer::{HalfCell, solve_surface, solve_surface_from};
+        for fluid in ["nitrogen", "carbon-dioxide", "hydrogen"] {
+            let film = film(fluid);
+            for facing in [Facing::Side, Facing::Floor, Facing::Ceiling] {
+                for (conductance_w_k, k) in
+                    [60_000.0, 15_000.0, 300.0, 20.0].iter().flat_map(|g| (0..60).map(move |k| (*g, k)))
+                {
+                    let theta = (k as f64 / 3.0 - 14.0).exp2() * if k % 2 == 0 { 1.0 } else { -1.0 };
+                    let half =
+                        HalfCell { node_k: 320.0 + theta, conductance_w_k, conductance_slope_w_k2: 0.0 };
+                    let count = Cell::new(0);
+                    let found = solve_surface(&half, |surface_k| {
+                        count.set(count.get() + 1);
+                        film.series(facing, surface_k, 320.0, 3e6, 1.5)
+                    });
+                    let newton = |start_k| {
+                        let film_w = |surface_k| {
+                            let flux = film.flux(facing, surface_k, 320.0, 3e6, 1.5);
+                            (flux.flux_w_m2, flux.per_surface_k, ())
+                        };
+                        solve_surface_from(&half, start_k, film_w).0
+                    };
+                    let exact = newton(newton(half.node_k).surface_k);
+                    // The rounding of 320 K times a film of 100 W/(m² K) is 6e-12 W.
+                    approx::assert_relative_eq!(
+                        found.heat_w,
+                        exact.heat_w,
+                        max_relative = 1e-11,
+                        epsilon = 1e-11
+                    );
+                    approx::assert_relative_eq!(found.film_factor, exact.film_factor, max_relative = 1e-6);
+                    if conductance_w_k == 60_000.0 && theta.abs() < 2.0 {
+                        assert_eq!(count.get(), 1, "{fluid}, {theta} K");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

@@ -5,4 +5,6 @@ mod surface;
 
 #[cfg(feature = "simulate")]
 pub(crate) use surface::SurfaceBalance;
-pub(crate) use surface::{HalfCell, solve_surface, solve_surface_from};
+#[cfg(feature = "simulate")]
+pub(crate) use surface::{FilmSeries, LAST_STEP_K, solve_surface};
+pub(crate) use surface::{HalfCell, solve_surface_from};
