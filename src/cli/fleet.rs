@@ -24,7 +24,6 @@ pub(super) use kept::kept;
 pub(super) use logs::{files, name_of};
 #[cfg(feature = "serve")]
 pub(super) use run::LAST_EVENTS;
-pub use tally::FleetProgress;
 #[cfg(feature = "serve")]
 pub(super) use vessels::{as_columns, vessel_beside};
 
@@ -40,12 +39,13 @@ use crate::report::{Input, Provenance};
 use anyhow::{Context, bail};
 use arguments::TableFormat;
 use folder::Folder;
-use job::{Done, Fleet, Job};
+use job::{Done, Fleet};
 use logs::Found;
 use plan::Changes;
 use rayon::prelude::*;
 use record::Record;
 use results::Results;
+use run::Job;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
 //! A program that calls the commands instead of a shell ([`crate::run`]): what it brings in place of files, and what it takes.
-use super::fleet::FleetProgress;
+use super::fleet_progress::FleetProgress;
 use crate::log::MemoryLog;
 use crate::report::{Provenance, Report, Table};
 use serde_json::Value;

@@ -18,6 +18,7 @@ use std::process::ExitCode;
 
 mod announced;
 mod arguments;
+mod context;
 mod course;
 mod engine;
 mod events;
@@ -43,11 +44,12 @@ pub(super) use steps::NotResumed;
 pub use steps::RowsWanted;
 pub(crate) use steps::Steps;
 
+use context::RunContext;
 use engine::Engine;
 use events::Console;
 use order::Order;
 use resume::RunStart;
-use session::{Finished, RunContext, Session};
+use session::{Finished, Session};
 
 /// Monitors row by row and writes.
 pub(super) fn run(arguments: MonitorArguments, messages: &Messages) -> anyhow::Result<ExitCode> {

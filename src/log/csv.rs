@@ -7,10 +7,11 @@ use super::cell::{Cell, shown};
 use super::columns::Columns;
 use super::header::{self, Header, decoded};
 use super::inspect::{Survey, Tap};
+use super::label::is_cylinder;
 use super::record::Records;
 use super::row::RawRow;
 use super::time::TimeReader;
-use super::{LogError, LogOptions, Packing, cylinders, date};
+use super::{LogError, LogOptions, Packing, date};
 use crate::thermal::units::Unit;
 use std::io::Read;
 
@@ -96,7 +97,7 @@ impl CsvSource {
     fn of(file: &str, records: Records, header: Header, columns: &Columns, options: &LogOptions) -> Self {
         let decimal_comma = header.separator != b',';
         let time = &columns.time;
-        let named = header.names.iter().position(|name| cylinders::is_column(name));
+        let named = header.names.iter().position(|name| is_cylinder(name));
         let wanted = options.cylinder.as_ref().map(|name| name.as_bytes().to_vec());
         Self {
             only: named.zip(wanted),

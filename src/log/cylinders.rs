@@ -5,14 +5,12 @@
 use super::caution::{Cautions, Kind};
 use super::cell::{Cell, shown};
 use super::header::Header;
+use super::label::is_cylinder;
 use super::record::Records;
 use super::{Caution, LogError, LogOptions, is_parquet};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-
-/// Name of the column.
-const COLUMN: &str = "cylinder";
 
 /// What a log holds beside rows of cylinders.
 #[derive(Debug, Default)]
@@ -25,11 +23,6 @@ pub(crate) struct Rest {
     pub damage: Option<LogError>,
 }
 
-/// Whether a header is that of the column.
-pub(super) fn is_column(header: &str) -> bool {
-    header.trim().eq_ignore_ascii_case(COLUMN)
-}
-
 /// Whether a file has a column `cylinder`.
 ///
 /// # Errors
@@ -39,7 +32,7 @@ pub(crate) fn has_column(path: &Path, options: &LogOptions) -> Result<bool, LogE
     let opened = File::open(path).map_err(|source| LogError::Io { file: file.clone(), source })?;
     let mut records = Records::new(text(opened, &file, u64::MAX)?, &file)?;
     let header = Header::read(&mut records, options)?;
-    Ok(header.is_some_and(|header| header.names.iter().any(|name| is_column(name))))
+    Ok(header.is_some_and(|header| header.names.iter().any(|name| is_cylinder(name))))
 }
 
 /// Reads a log with a column `cylinder` up to a length and hands out each row: whose it is, and its bytes for a spool.
@@ -89,7 +82,7 @@ impl Splitter {
         let mut records = Records::new(text(input, file, length)?, file)?;
         let header = Header::read(&mut records, options)?;
         let header = header.ok_or_else(|| LogError::Empty { file: file.to_owned() })?;
-        let at = header.names.iter().position(|name| is_column(name));
+        let at = header.names.iter().position(|name| is_cylinder(name));
         let at = at.ok_or_else(|| LogError::Empty { file: file.to_owned() })?;
         let decimal_comma = header.separator != b',';
         let cautions = Cautions::default();

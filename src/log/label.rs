@@ -9,6 +9,11 @@ pub(in crate::log) struct Label<'a> {
     pub unit: Option<&'a str>,
 }
 
+/// Whether a header is that of the column which names cylinders.
+pub(in crate::log) fn is_cylinder(header: &str) -> bool {
+    header.trim().eq_ignore_ascii_case("cylinder")
+}
+
 /// Words for units, in small letters, with the suffixes that agree with them, the likely one first. `bar` alone does not
 /// say from which zero it counts. A unit without suffixes is none that is read.
 const WORDS: [(&str, &[&str]); 71] = [

@@ -1,6 +1,6 @@
 //! A dict of columns as a log: arrays of numpy, and lists of numbers, texts or datetimes.
-use crate::arguments;
 use crate::error::refused;
+use crate::time;
 use cylwatch::run::{Cells, MemoryLog};
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
@@ -154,7 +154,7 @@ fn item(value: &Bound<'_, PyAny>, refuse: Refuse<'_>) -> PyResult<Item> {
         return Ok(Item::Text(text.to_cow()?.into_owned()));
     }
     if let Ok(date) = value.cast::<PyDateTime>() {
-        let (tick, zone) = arguments::instant(date)?;
+        let (tick, zone) = time::instant(date)?;
         return Ok(Item::Instant(tick, zone));
     }
     match value.extract::<f64>() {

@@ -15,6 +15,8 @@ mod outcome;
 mod request;
 mod rows;
 mod steps;
+mod table;
+mod time;
 
 use outcome::Outcome;
 use pyo3::prelude::*;

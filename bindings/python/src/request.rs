@@ -1,8 +1,9 @@
 //! A call from Python, as data that goes to the run without the interpreter.
 use crate::arguments::{self, Document};
 use crate::border::{self, Signal};
+use crate::error;
 use crate::outcome::Outcome;
-use crate::{arrow, columns, error};
+use crate::table::table;
 use cylwatch::run::{self, Call, MemoryLog, RunError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -147,12 +148,4 @@ fn place(log: &Bound<'_, PyAny>, name: &str) -> PyResult<Place> {
         );
         error::refused(log.py(), &message)
     })
-}
-
-/// A table of Arrow or a dict of columns as a log of this name.
-pub(crate) fn table(log: &Bound<'_, PyAny>, name: &str) -> PyResult<MemoryLog> {
-    match log.cast::<PyDict>() {
-        Ok(dict) => columns::log(dict, name),
-        Err(_) => arrow::log(log, name),
-    }
 }

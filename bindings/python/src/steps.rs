@@ -1,7 +1,7 @@
 //! Monitor and observer step by step.
 use crate::border;
 use crate::request::{FRAME, Request};
-use crate::{arguments, arrow, outcome, rows};
+use crate::{arrow, outcome, rows, time};
 use cylwatch::run::{Cells, MonitorSteps, ObserverSteps, RowsWanted, RunError, StepTime, Told};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
@@ -29,7 +29,7 @@ fn row(time: &Bound<'_, PyAny>, readings: &Bound<'_, PyDict>) -> PyResult<(StepT
         let value = if value.is_none() { f64::NAN } else { value.extract()? };
         row.push((name.extract()?, value));
     }
-    Ok((arguments::time(time)?, row))
+    Ok((time::time(time)?, row))
 }
 
 fn borrowed(readings: &Readings) -> Vec<(&str, f64)> {

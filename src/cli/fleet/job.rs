@@ -2,10 +2,10 @@
 use super::arguments::FleetArguments;
 use super::columns::ColumnLog;
 use super::folder::{Files, Folder};
-use super::logs::{Logs, Naming};
+use super::logs::Naming;
 use super::plan::{Changes, Plan, Step, mark};
 use super::record::{LogRecord, Record, VERSION, file_hash};
-use super::run::Run;
+use super::run::{Job, Run};
 use super::vessels::Assigned;
 use crate::cli::host::Host;
 use crate::cli::input::Inputs;
@@ -43,16 +43,6 @@ pub(super) struct Fleet<'a> {
     pub changes: Changes,
     /// Tells whether the run is to end.
     pub stop: Arc<dyn Fn() -> bool + Send + Sync>,
-}
-
-/// A cylinder that is to be done.
-pub(super) struct Job<'a> {
-    /// Its name.
-    pub name: &'a str,
-    /// Vessel and options.
-    pub assigned: &'a Assigned,
-    /// Its logs.
-    pub logs: &'a Logs,
 }
 
 /// What became of a cylinder.

@@ -1,12 +1,23 @@
 //! What a cylinder comes to on its way through its logs, and the row that is left of it.
 use super::folder::Files;
-use super::job::Job;
+use super::logs::Logs;
 use super::record::{LogRecord, Record};
+use super::vessels::Assigned;
 use crate::cli::monitor::{Course, Told};
 use crate::report::fleet::{Cylinder, Fault, Finding};
 
 /// Events that a cylinder's row keeps.
 pub(in crate::cli) const LAST_EVENTS: usize = 5;
+
+/// A cylinder that is to be done.
+pub(super) struct Job<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Vessel and options.
+    pub assigned: &'a Assigned,
+    /// Its logs.
+    pub logs: &'a Logs,
+}
 
 /// What a cylinder comes to before it is put on record.
 #[derive(Default)]

@@ -1,5 +1,5 @@
 //! Outputs as rows of the data.
-use super::session::RunContext;
+use super::context::RunContext;
 use super::state::State;
 use super::*;
 use crate::cli::row_stream::RowStream;

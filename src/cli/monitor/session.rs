@@ -1,9 +1,10 @@
 //! A run: rows in, outputs out, the state saved now and then.
+use super::context::RunContext;
 use super::events::{Console, EventSink};
 use super::reading::Reading;
 use super::resume::refused;
 use super::rows::Rows;
-use super::state::{Identity, Refusal, State};
+use super::state::{Refusal, State};
 use super::*;
 use crate::detector::monitor::intake::Counts;
 use crate::detector::monitor::{Monitor, Outcome, Output};
@@ -33,15 +34,6 @@ pub(in crate::cli) struct Finished {
     pub zone: Option<String>,
     /// What was read.
     pub reading: Reading,
-}
-
-/// What a run uses.
-pub(super) struct RunContext<'a> {
-    pub options: &'a Options,
-    pub inputs: &'a Inputs,
-    pub selection: &'a Selection,
-    pub messages: &'a Messages,
-    pub identity: Identity,
 }
 
 /// A run that is under way.

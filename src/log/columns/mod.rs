@@ -17,8 +17,8 @@ mod units;
 pub(super) use survey::survey;
 
 use super::caution::{Cautions, Kind};
-use super::label::Label;
-use super::{LogError, LogOptions, cylinders};
+use super::label::{Label, is_cylinder};
+use super::{LogError, LogOptions};
 use crate::estimator::log::{Channel, Quantity};
 use crate::estimator::sensor::KindChoice;
 use crate::thermal::document::Problem;
@@ -376,7 +376,7 @@ fn set_aside(found: &[Found<'_>], at: &str, options: &LogOptions, cautions: &mut
     let is_known = |column: &Found<'_>| {
         column.meaning != Meaning::Unknown
             || (simulated && is_simulated_only(column.header))
-            || (options.cylinder.is_some() && cylinders::is_column(column.header))
+            || (options.cylinder.is_some() && is_cylinder(column.header))
     };
     let unknown: Vec<&str> = found.iter().filter(|c| !is_known(c)).map(|column| column.header).collect();
     if unknown.is_empty() {

@@ -1,7 +1,7 @@
 //! What a saved state is held to before a monitor goes on from it. A check sum finds accidents, not what was sealed with a wrong value in it: a length
 //! that an index relies on, a count that has no place for one more, a time from which a step would take years.
 use crate::DetectorError;
-use crate::monitor::intake::IntakeSettings;
+use crate::monitor::intake::settings::IntakeSettings;
 
 /// Longest gap between two rows, as a multiple of the longest that is believed of rows that come often.
 const LONGEST: f64 = 4.0;

@@ -25,7 +25,7 @@ use cylwatch_thermal::trajectory::Trajectory;
 use cylwatch_thermal::units::{BAR_PA, HOUR_S, QUOTED_K, ZERO_CELSIUS_K};
 use cylwatch_thermal::vessel::{Fill, GasResolution, Stratification, Vessel};
 
-use super::climate::Unrest;
+use super::climate::unrest::Unrest;
 use super::reading::Scene;
 use super::samples::Samples;
 use super::{SensorDraw, SteadyLeak, Thermometer, Transmitter, VesselDraw, VesselKind};

@@ -8,7 +8,7 @@ use crate::ThermalError;
 #[cfg(feature = "simulate")]
 use crate::fluid::{Fluid, Real, State};
 #[cfg(feature = "simulate")]
-use crate::scenario::Series;
+use crate::scenario::series::Series;
 use alloc::string::String;
 
 /// A flow with the times and conditions at which it runs.

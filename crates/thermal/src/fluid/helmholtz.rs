@@ -13,44 +13,10 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use once_cell::race::OnceBox;
 
-use super::data::{FluidData, GaussianTerm, PowerTerm};
+use super::data::terms::{FluidData, GaussianTerm, PowerTerm};
+use super::derivatives::{NEGLIGIBLE, Reduced};
 use super::special::{departure, nonanalytic, power};
 use super::{Real, Saturation};
-
-/// `alpha` and its scaled derivatives. `d`: `rho d/d(rho)`, `t`: `-T d/dT` (in `tau`: `tau d/d(tau)`); second ones are
-/// `delta^2 d2/d(delta)^2`, `delta tau d2/d(delta)d(tau)`, `tau^2 d2/d(tau)^2`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reduced<D> {
-    /// Value.
-    pub a: D,
-    /// First derivative in density.
-    pub d: D,
-    /// First derivative in inverse temperature.
-    pub t: D,
-    /// Second derivative in density.
-    pub dd: D,
-    /// Mixed derivative.
-    pub dt: D,
-    /// Second derivative in inverse temperature.
-    pub tt: D,
-}
-
-impl<D: Real> Reduced<D> {
-    /// All zero: the ideal gas's residual part.
-    pub(crate) fn zero() -> Self {
-        let zero = D::from(0.0);
-        Self { a: zero, d: zero, t: zero, dd: zero, dt: zero, tt: zero }
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.a += other.a;
-        self.d += other.d;
-        self.t += other.t;
-        self.dd += other.dd;
-        self.dt += other.dt;
-        self.tt += other.tt;
-    }
-}
 
 /// An equation of state: its residual reduced Helmholtz energy.
 pub(super) trait HelmholtzEnergy {
@@ -66,8 +32,6 @@ pub(super) trait HelmholtzEnergy {
 
 /// Largest exponent of `delta` in any term.
 const MAX_D: usize = 16;
-/// Below this exponent a Gaussian term is below 1e-26 and left out.
-pub(super) const NEGLIGIBLE: f64 = -60.0;
 
 /// Most pairs of (`l`, `d`), distinct exponents of `tau` and Gaussian terms of any equation.
 const MAX_SLOTS: usize = 40;

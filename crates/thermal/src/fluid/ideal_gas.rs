@@ -1,6 +1,7 @@
 //! The ideal gas, `p = rho R T`: no residual part. The heat capacity stays that of the reference equation's ideal part.
 use super::Real;
-use super::helmholtz::{HelmholtzEnergy, Reduced};
+use super::derivatives::Reduced;
+use super::helmholtz::HelmholtzEnergy;
 
 /// The ideal gas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,6 +10,7 @@
 //! the checked functions refuse what is outside the domain or two-phase. Near the critical point (within 0.5 %
 //! of the critical temperature below it) phases are not told apart, and states in question are refused.
 mod data;
+mod derivatives;
 mod helmholtz;
 mod ideal_gas;
 mod peng_robinson;
@@ -32,8 +33,9 @@ pub use state::State;
 
 use crate::ThermalError;
 pub use crate::real::Real;
-use data::FluidData;
-use helmholtz::{HelmholtzEnergy, Multiparameter, Reduced, ideal};
+use data::terms::FluidData;
+use derivatives::Reduced;
+use helmholtz::{HelmholtzEnergy, Multiparameter, ideal};
 use ideal_gas::IdealGas;
 use peng_robinson::PengRobinson;
 use transport::TransportState;

@@ -6,8 +6,9 @@
 use core::f64::consts::SQRT_2;
 
 use super::Real;
-use super::data::FluidData;
-use super::helmholtz::{HelmholtzEnergy, Reduced};
+use super::data::terms::FluidData;
+use super::derivatives::Reduced;
+use super::helmholtz::HelmholtzEnergy;
 
 /// The Peng-Robinson equation of one fluid.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Terms that few equations of state have, each with its scaled derivatives: those about the critical point of Span and Wagner (1996),
 //! departure functions of mixtures (Kunz and Wagner 2012), and power terms for which the tables have no place.
 use super::Real;
-use super::data::{DepartureTerm, NonanalyticTerm, PowerTerm};
-use super::helmholtz::{NEGLIGIBLE, Reduced};
+use super::data::terms::{DepartureTerm, NonanalyticTerm, PowerTerm};
+use super::derivatives::{NEGLIGIBLE, Reduced};
 
 /// Least distance of `delta` from 1 in a non-analytic term, whose powers have no derivative there.
 const SHIFT: f64 = 1e-10;

@@ -5,7 +5,7 @@
 //! `cv = -R alpha_tt`, `(dp/drho)_T = R T (1 + 2 alphar_d + alphar_dd)`, `(dp/dT)_rho = rho R (1 + alphar_d - alphar_dt)`,
 //! `cp = cv + T (dp/dT)^2 / (rho^2 dp/drho)`, `w^2 = cp/cv dp/drho`, `beta = (dp/dT) / (rho dp/drho)`.
 use super::Real;
-use super::helmholtz::Reduced;
+use super::derivatives::Reduced;
 
 /// A state; `D` is `f64` or a dual number.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,5 @@
 //! Nitrogen with CoolProp's reducing density, so that its table must be met to rounding; and mixtures that are not in files.
-use super::data::{FluidData, Mixture};
+use super::data::{Mixture, terms::FluidData};
 use super::{Equation, Fluid};
 
 /// CoolProp 8.0.0 reduces nitrogen with this density, mol/m³; Span et al. (2000) print 11183.9.

@@ -1,7 +1,7 @@
 //! What crosses the boundary of the gas: the flows of a scenario as they are open now, and the jets of refills.
 use super::inputs::Moment;
+use super::node::Node;
 use super::supply::Supply;
-use super::well_mixed::Node;
 use crate::ThermalError;
 use crate::flow::orifice;
 use crate::flow::{Flow, FlowKind, Opening, OpeningFlow};

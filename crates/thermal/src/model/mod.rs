@@ -18,6 +18,7 @@ mod initial;
 pub mod inputs;
 mod jacobian;
 pub mod layout;
+mod node;
 mod output;
 mod stratified;
 mod supply;

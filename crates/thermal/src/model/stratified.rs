@@ -26,7 +26,8 @@ use nalgebra::DMatrix;
 
 use super::boundary::{Boundary, Exchange};
 use super::grid::{GasCell, GasGrid};
-use super::well_mixed::{Node, Rates, WellMixed};
+use super::node::{Node, Rates};
+use super::well_mixed::WellMixed;
 use crate::ThermalError;
 use crate::fluid::Real;
 use crate::transfer::inside::GRAVITY_M_S2;

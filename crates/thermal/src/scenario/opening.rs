@@ -1,13 +1,11 @@
 //! How the gas of a flow is said to flow, with its checks: a mass flow, constant or as a table, or an orifice or valve that it passes.
 use super::Series;
-use super::signal::{CsvSpec, Files, FlowTable, Signal};
+use super::signal::{CsvSpec, Files, FlowTable, MASS_FLOW_MAX_KG_S, Signal};
 use crate::ThermalError;
 use crate::document::check;
 use crate::flow::Opening;
 use crate::units::Dimension;
 
-/// Largest mass flow, kg/s.
-pub(super) const MASS_FLOW_MAX_KG_S: f64 = 100.0;
 /// Pressure differential ratio factor of a globe valve whose flow opens it (IEC 60534-2-1, table of typical values).
 const X_T_GLOBE: f64 = 0.72;
 /// Discharge coefficient of an orifice of which nothing is known.

@@ -7,6 +7,9 @@ use crate::ThermalError;
 use crate::document::{Problem, check, column};
 use crate::units::Dimension;
 
+/// Largest mass flow, kg/s.
+pub(super) const MASS_FLOW_MAX_KG_S: f64 = 100.0;
+
 /// Reads a file that a scenario names; relative names count from the scenario's folder.
 pub(super) type Files<'f> = &'f dyn Fn(&str) -> std::io::Result<String>;
 
@@ -166,7 +169,7 @@ impl Signal<'_> {
             Dimension::MassFlow => {
                 let bound = "between 0 and 100 kg/s";
                 let remedy = "the direction is clear from [[leak]], [[discharge]] or [[refill]]; check the unit, _g_h or _kg_s";
-                check::within(path, value, (0.0, super::opening::MASS_FLOW_MAX_KG_S), bound, remedy)
+                check::within(path, value, (0.0, MASS_FLOW_MAX_KG_S), bound, remedy)
             }
             Dimension::Film => {
                 let bound = "between 0 and 10000 W/m2/K";

@@ -2,6 +2,7 @@
 use super::kind::{Kind, StatedKind};
 use super::parameter::{Parameter, ParameterKind};
 use super::spec::{KeyOf, SensorSpec};
+use super::table::Table;
 use super::valid::{self, Bound};
 use super::{CorrelatedNoise, MountedSensor, Pt100Class, Quantity};
 use crate::ThermalError;
@@ -63,18 +64,7 @@ impl SensorSpec {
     }
 }
 
-/// A table with its path.
-pub(super) struct Table<'a> {
-    pub(super) spec: &'a SensorSpec,
-    path: &'a str,
-    is_pressure: bool,
-}
-
 impl Table<'_> {
-    pub(super) fn at(&self, field: &str) -> String {
-        format!("{}.{field}", self.path)
-    }
-
     /// Keys of other kinds mean nothing here; a silent one would look as if it did.
     fn refuse_foreign(&self, kind: &StatedKind) -> Result<(), ThermalError> {
         for (key, of) in self.spec.stated_keys() {

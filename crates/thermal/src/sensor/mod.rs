@@ -12,6 +12,8 @@ mod pt100;
 mod reading;
 #[cfg(feature = "files")]
 mod spec;
+#[cfg(feature = "files")]
+mod table;
 mod valid;
 
 use alloc::string::String;

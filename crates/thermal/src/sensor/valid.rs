@@ -5,6 +5,10 @@ use crate::bounds;
 use crate::units::ZERO_CELSIUS_K;
 use alloc::string::String;
 
+/// What to say of a place in the gas that is none.
+pub(super) const CELL_REMEDY: &str =
+    "say where it hangs: cell = 1 is the lowest cell of the gas, or height_mm = 400";
+
 /// Real pressures of the air from -500 m to 11 km after ISO 2533, Pa.
 const ATMOSPHERES_PA: (f64, f64) = (2.2e4, 1.08e5);
 
@@ -149,7 +153,7 @@ impl SensorKind {
             }
             Self::Gas { place: GasPlace::Cell { number: 0 } }
             | Self::Immersion { place: GasPlace::Cell { number: 0 } } => {
-                Err(bounds::broken(&format!("{path}.cell"), 0, "at least 1", super::kind::CELL_REMEDY))
+                Err(bounds::broken(&format!("{path}.cell"), 0, "at least 1", CELL_REMEDY))
             }
             Self::Pressure { reference, full_scale_pa } => {
                 if let Some(scale_pa) = full_scale_pa {

@@ -11,6 +11,8 @@ use hyper::header::{
 use hyper::http::StatusCode;
 use hyper::{Method, Request, Response};
 
+/// Path for health checks, which needs no token.
+pub(super) const HEALTH: &str = "/healthz";
 /// How a browser is asked for the token: it then sends it with every request, those for events as well.
 const CHALLENGE: &str = "Basic realm=\"cylwatch: any user, the token as password\", charset=\"UTF-8\"";
 
@@ -36,9 +38,7 @@ pub(super) async fn refused<B>(request: &Request<B>, site: &Site) -> Option<Resp
         return refused(Limit::Host, StatusCode::MISDIRECTED_REQUEST, words);
     }
     match &site.page.token {
-        Some(token) if request.uri().path() != super::routes::HEALTH => {
-            unadmitted(headers, token, site).await
-        }
+        Some(token) if request.uri().path() != HEALTH => unadmitted(headers, token, site).await,
         _ => None,
     }
 }

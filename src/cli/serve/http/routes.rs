@@ -17,8 +17,6 @@ use serde_json::json;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Path for health checks, which needs no token.
-pub(super) const HEALTH: &str = "/healthz";
 /// How long a page waits for the loop to show the cylinders.
 const WAIT: Duration = Duration::from_secs(3);
 /// Between two looks whether it has.
@@ -38,7 +36,7 @@ pub(super) async fn answer<B>(request: &Request<B>, site: &Arc<Site>, place: &Pl
             "/" => page(site).await,
             "/events" => stream(request, site, place),
             "/metrics" => text(StatusCode::OK, metrics::FORMAT, metrics::text(site)),
-            HEALTH => health(site),
+            guard::HEALTH => health(site),
             _ => {
                 site.counts.refuse(Limit::Path);
                 refusal(StatusCode::NOT_FOUND, "there is /, /metrics and /healthz")

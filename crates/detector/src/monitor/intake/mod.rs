@@ -19,7 +19,7 @@ mod interval;
 mod memory;
 mod order;
 mod row;
-mod settings;
+pub(super) mod settings;
 
 use serde::{Deserialize, Serialize};
 

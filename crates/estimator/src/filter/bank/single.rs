@@ -5,11 +5,10 @@ use nalgebra::DMatrix;
 use super::engine::BankEngine;
 use super::member::Member;
 use super::windowed::Windowed;
-use super::workspace::Workspace;
+use super::workspace::{SingleMemory, Workspace};
 use crate::EstimatorError;
 use crate::filter::gate::Outcome;
 use crate::filter::plant::Plant;
-use crate::filter::state_space::Linearisation;
 use crate::filter::stationary::Stationary;
 use crate::filter::step::parts;
 use crate::filter::ud::UdFactors;
@@ -28,22 +27,6 @@ enum Engine<P: Plant> {
     Unscented,
     Stationary(Box<Stationary>),
     MovingHorizon(Box<Windowed<P>>),
-}
-
-/// Memory of members that move one by one.
-#[derive(Debug)]
-pub(super) struct SingleMemory {
-    pub(super) linear: Linearisation,
-    pub(super) points: SigmaPoints,
-}
-
-impl SingleMemory {
-    pub(super) fn new<P: Plant>(plant: &P) -> Self {
-        Self {
-            linear: Linearisation::zeros(plant.states(), plant.leading(), plant.noises()),
-            points: SigmaPoints::new(plant),
-        }
-    }
 }
 
 impl<P: Plant> Single<P> {

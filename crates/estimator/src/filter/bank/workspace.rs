@@ -1,8 +1,8 @@
 //! Memory of a step.
 use super::pack::PackMemory;
-#[cfg(feature = "design")]
-use super::single::SingleMemory;
 use crate::filter::plant::Plant;
+#[cfg(feature = "design")]
+use crate::filter::{state_space::Linearisation, unscented::SigmaPoints};
 #[cfg(feature = "design")]
 use alloc::boxed::Box;
 use alloc::vec::Vec;
@@ -28,6 +28,24 @@ impl Workspace {
             #[cfg(feature = "design")]
             single: None,
             pack: PackMemory::new(plant),
+        }
+    }
+}
+
+/// Memory of members that move one by one.
+#[cfg(feature = "design")]
+#[derive(Debug)]
+pub(super) struct SingleMemory {
+    pub(super) linear: Linearisation,
+    pub(super) points: SigmaPoints,
+}
+
+#[cfg(feature = "design")]
+impl SingleMemory {
+    pub(super) fn new<P: Plant>(plant: &P) -> Self {
+        Self {
+            linear: Linearisation::zeros(plant.states(), plant.leading(), plant.noises()),
+            points: SigmaPoints::new(plant),
         }
     }
 }

@@ -5,7 +5,8 @@
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TunnelLaw};
 use super::part::StayAir;
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use crate::random::{Purpose, Random};
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 

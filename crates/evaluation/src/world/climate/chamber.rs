@@ -5,7 +5,8 @@
 //! Film 16 W/(m² K) by its fan; the walls have the temperature of the air.
 use super::Span;
 use super::part::Polyline;
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
 use crate::world::chamber::Chamber;

@@ -4,7 +4,8 @@
 //! an hour. Hardly a cloud: sun from 6 to 19 h with single minutes of shade. The night sky takes 5 to 12 K away.
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw};
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use crate::random::{Purpose, Random};
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 

@@ -6,7 +6,8 @@
 use super::Span;
 use super::draw::TunnelLaw;
 use super::part::{Polyline, StayAir};
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
 use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};

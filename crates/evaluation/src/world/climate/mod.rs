@@ -15,6 +15,7 @@ mod showers;
 mod switching;
 #[cfg(test)]
 mod tests;
+pub(super) mod unrest;
 mod weather;
 mod workshop;
 
@@ -24,8 +25,8 @@ use cylwatch_thermal::units::DAY_S;
 
 use super::Climate;
 use crate::random::{Purpose, Random};
+pub(super) use weather::Lag;
 use weather::Weather;
-pub(super) use weather::{Lag, Unrest};
 
 /// What a climate is drawn for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,8 @@
 //! hour; sun in patches of up to 700 W/m² on the upper part; the sky takes 2 to 8 K away.
 use super::Span;
 use super::draw::SunLaw;
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};

@@ -5,7 +5,8 @@
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TripLaw, TunnelLaw};
 use super::part::StayAir;
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
 pub(super) const SERVICE_S: (f64, f64) = (5.0 * HOUR_S, 22.0 * HOUR_S);

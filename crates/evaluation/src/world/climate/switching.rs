@@ -7,7 +7,8 @@ use super::Span;
 use super::draw::{TripLaw, TunnelLaw};
 use super::part::StayAir;
 use super::railway::{DAYLIGHT_S, SERVICE_S, patchy_sun, winter};
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use cylwatch_thermal::units::MINUTE_S;
 
 const HIGHEST_DEGC: f64 = 55.0;

@@ -4,7 +4,8 @@
 use super::Span;
 use super::draw::{OutsideLaw, Range};
 use super::part::Polyline;
-use super::weather::{Film, Unrest, Weather};
+use super::unrest::Unrest;
+use super::weather::{Film, Weather};
 use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 

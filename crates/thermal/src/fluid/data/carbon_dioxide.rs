@@ -4,7 +4,9 @@
 //! triple-point temperature to 1100 K at pressures up to 800 MPa", J. Phys. Chem. Ref. Data 25 (1996) 1509,
 //! doi:10.1063/1.555991. Critical density 467.6 kg/m³.
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, NonanalyticTerm as N, PowerTerm as P};
+use crate::fluid::data::terms::{
+    FluidData, GaussianTerm as G, Melting, NonanalyticTerm as N, PowerTerm as P,
+};
 use crate::fluid::transport::Transport;
 use alloc::borrow::Cow::Borrowed;
 

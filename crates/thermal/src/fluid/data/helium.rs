@@ -4,7 +4,7 @@
 //! (2013), as later published with K. R. Hall, J. C. Holste, V. D. Arp, A. H. Harvey, E. W. Lemmon,
 //! J. Phys. Chem. Ref. Data 49 (2020) 033105 (project coefficients: CoolProp 8.0.0).
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
+use crate::fluid::data::terms::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::Transport;
 use alloc::borrow::Cow::Borrowed;
 

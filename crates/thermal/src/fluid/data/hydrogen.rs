@@ -3,7 +3,7 @@
 //! Equation of state: J. W. Leachman, R. T Jacobsen, S. G. Penoncello, E. W. Lemmon, "Fundamental equations of state for
 //! parahydrogen, normal hydrogen, and orthohydrogen", J. Phys. Chem. Ref. Data 38 (2009) 721, doi:10.1063/1.3160306: normal hydrogen.
 //! Transport: see [`crate::fluid::transport`].
-use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
+use crate::fluid::data::terms::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::Transport;
 use alloc::borrow::Cow::Borrowed;
 

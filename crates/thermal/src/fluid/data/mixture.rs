@@ -16,7 +16,9 @@
 //! O. Kunz, W. Wagner, "The GERG-2008 wide-range equation of state for natural gases and other mixtures: an expansion of
 //! GERG-2004", J. Chem. Eng. Data 57 (2012) 3032, doi:10.1021/je300655b. Normal range 90 to 450 K and 35 MPa, extended to
 //! 700 K and 70 MPa.
-use crate::fluid::data::{DepartureTerm as D, FluidData, GaussianTerm, Melting, NonanalyticTerm, PowerTerm};
+use crate::fluid::data::terms::{
+    DepartureTerm as D, FluidData, GaussianTerm, Melting, NonanalyticTerm, PowerTerm,
+};
 use crate::fluid::peng_robinson;
 use crate::fluid::transport::{MixtureComponent, MixtureTransport, Transport};
 use alloc::borrow::Cow;

@@ -5,7 +5,7 @@
 //! J. Phys. Chem. Ref. Data 29 (2000) 1361, doi:10.1063/1.1349047. Reducing density as published, 11.1839 mol/dm³.
 //! Transport: E. W. Lemmon, R. T. Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi:10.1023/B:IJOT.0000022327.04529.f3, in the digits of CoolProp 8.0.0;
 //! µPa s, mW/(m K), nm, g/mol.
-use crate::fluid::data::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
+use crate::fluid::data::terms::{FluidData, GaussianTerm as G, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 use alloc::borrow::Cow::Borrowed;
 

@@ -4,7 +4,7 @@
 //! 917, doi:10.1063/1.555897, the equation of R. Schmidt, W. Wagner, Fluid Phase Equilib. 19 (1985) 175, doi:10.1016/0378-3812(85)87016-3. It was fitted up to 300 K; from there to 450 K it
 //! extrapolates, as a filled cylinder in the sun needs and as CoolProp does.
 //! Transport: E. W. Lemmon, R. T Jacobsen, Int. J. Thermophys. 25 (2004) 21, doi:10.1023/B:IJOT.0000022327.04529.f3; µPa s, mW/(m K), nm, g/mol. Digits as CoolProp 8.0.0 distributes them.
-use crate::fluid::data::{FluidData, Melting, PowerTerm as P};
+use crate::fluid::data::terms::{FluidData, Melting, PowerTerm as P};
 use crate::fluid::transport::{LemmonJacobsenData, OlchowySengers, Term as T, Transport};
 use alloc::borrow::Cow::Borrowed;
 

@@ -5,15 +5,12 @@ use {
     super::{GasPlace, SensorKind, StatedKind, Table},
     crate::ThermalError,
     crate::document::check,
+    crate::sensor::valid,
 };
 
 /// Lowest and highest temperature in the gas that can be a reading, K: blowdown and fast filling.
 #[cfg(feature = "files")]
 pub(super) const INSIDE_K: (f64, f64) = (93.15, 603.15);
-
-/// What to say of a place in the gas that is none.
-pub(in super::super) const CELL_REMEDY: &str =
-    "say where it hangs: cell = 1 is the lowest cell of the gas, or height_mm = 400";
 
 pub(super) const KIND: Kind = Kind {
     quantity: Quantity::Temperature,
@@ -65,6 +62,6 @@ pub(super) fn place(table: &Table<'_>) -> Result<GasPlace, ThermalError> {
             Err(check::broken(&table.at("name"), &spec.name, "numbered from 1", remedy))
         }
         (Some(number), _) | (None, Some(number)) => Ok(GasPlace::Cell { number }),
-        (None, None) => Err(check::missing(&table.at("cell"), CELL_REMEDY)),
+        (None, None) => Err(check::missing(&table.at("cell"), valid::CELL_REMEDY)),
     }
 }

@@ -10,12 +10,11 @@ use super::parameter::ParameterKind;
 use super::place::{GasPlace, SurfacePlace};
 use super::reading::{Exposure, Prediction, Quantity, Site};
 use super::valid::{Bound, Bounds};
-pub(super) use gas::CELL_REMEDY;
 pub use pressure::{ELECTRONICS_REFERENCE_K, PressureReference};
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "files")]
 use {
-    super::{SensorSpec, build::Table},
+    super::{SensorSpec, table::Table},
     crate::ThermalError,
     schemars::JsonSchema,
 };
