@@ -1,5 +1,5 @@
 //! A linear process with constant matrices: what is left of an estimator's time is the estimator.
-use cylwatch::estimator::filter::{Linearisation, StateSpace};
+use cylwatch::estimator::filter::{Dimensions, Linearisation, StateSpace};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
@@ -81,20 +81,13 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 impl StateSpace for Process {
     type Error = Infallible;
 
-    fn states(&self) -> usize {
-        self.linear.phi.ncols()
-    }
-
-    fn leading(&self) -> usize {
-        self.moved.len()
-    }
-
-    fn noises(&self) -> usize {
-        self.linear.q.len()
-    }
-
-    fn outputs(&self) -> usize {
-        self.h.len()
+    fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            states: self.linear.phi.ncols(),
+            leading: self.moved.len(),
+            noises: self.linear.q.len(),
+            outputs: self.h.len(),
+        }
     }
 
     fn propagate(

@@ -10,7 +10,9 @@ use std::convert::Infallible;
 
 use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::consistency::{EnsembleNees, Significance};
-use cylwatch_estimator::filter::{self, Bank, BankEngine, Belief, Linearisation, Outcome, Plant, StateSpace};
+use cylwatch_estimator::filter::{
+    self, Bank, BankEngine, Belief, Dimensions, Linearisation, Outcome, Plant, StateSpace,
+};
 use nalgebra::DMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -34,14 +36,8 @@ pub(crate) struct Tank(f64);
 
 impl StateSpace for Tank {
     type Error = Infallible;
-    fn states(&self) -> usize {
-        MEAN.len()
-    }
-    fn leading(&self) -> usize {
-        NOISE.len()
-    }
-    fn outputs(&self) -> usize {
-        2
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: MEAN.len(), leading: NOISE.len(), noises: NOISE.len(), outputs: 2 }
     }
     fn propagate(&mut self, x: &mut [f64], dt: f64, to: Linear<'_>) -> Result<(), Infallible> {
         let film = 150.0 * (x[1] - x[0]).abs().cbrt();

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::estimator::EstimatorError;
 use crate::estimator::bound::path_bound;
-use crate::estimator::filter::{Linearisation, StateSpace, StepError, UdFactors};
+use crate::estimator::filter::{Dimensions, Linearisation, StateSpace, StepError, UdFactors};
 use crate::estimator::observer::cylinder::Cylinder;
 use crate::estimator::observer::states::{StateKind, States};
 use crate::estimator::observer::{LeakHypothesis, ModelError, ObserverSettings, Walk};
@@ -181,20 +181,8 @@ impl Draws {
 impl StateSpace for OwnWorld {
     type Error = EstimatorError;
 
-    fn states(&self) -> usize {
-        self.cylinder.states()
-    }
-
-    fn leading(&self) -> usize {
-        self.cylinder.leading()
-    }
-
-    fn noises(&self) -> usize {
-        self.cylinder.noises()
-    }
-
-    fn outputs(&self) -> usize {
-        self.cylinder.outputs()
+    fn dimensions(&self) -> Dimensions {
+        self.cylinder.dimensions()
     }
 
     fn propagate(

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, dmatrix, dvector};
 
 use super::*;
 use crate::consistency::Significance;
-use crate::filter::{Linearisation, StateSpace, UdFactors};
+use crate::filter::{Dimensions, Linearisation, StateSpace, UdFactors};
 
 /// `x+ = f(x) + w`, `z = h(x) + v`, `x` scalar, perhaps with a constant behind it.
 struct Scalar {
@@ -19,20 +19,8 @@ struct Scalar {
 impl StateSpace for Scalar {
     type Error = Infallible;
 
-    fn states(&self) -> usize {
-        self.states
-    }
-
-    fn leading(&self) -> usize {
-        1
-    }
-
-    fn noises(&self) -> usize {
-        1
-    }
-
-    fn outputs(&self) -> usize {
-        1
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: self.states, leading: 1, noises: 1, outputs: 1 }
     }
 
     fn propagate(

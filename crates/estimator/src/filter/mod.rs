@@ -49,7 +49,7 @@ pub use record::StepRecord;
 pub use riccati::{SteadyState, steady_prediction, steady_state};
 pub(crate) use smoother::Backward;
 pub use smoother::{Smoothed, smooth};
-pub use state_space::{Linearisation, StateSpace};
+pub use state_space::{Dimensions, Linearisation, StateSpace};
 pub use step::StepTransition;
 pub(crate) use step::{StepMemory, Steps};
 pub use ud::UdFactors;

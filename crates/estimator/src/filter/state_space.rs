@@ -29,24 +29,46 @@ impl Linearisation {
     }
 }
 
+/// How many of each there are in a process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimensions {
+    /// States `n`.
+    pub states: usize,
+    /// Leading states that move or are driven by noise.
+    pub leading: usize,
+    /// Noise sources `k` of a transition.
+    pub noises: usize,
+    /// Outputs.
+    pub outputs: usize,
+}
+
 /// Process and outputs of an estimation problem. Implementations reuse their own memory: nothing is allocated in a step.
 pub trait StateSpace {
     /// What can go wrong, e.g. a state outside the domain of the equations.
     type Error: core::error::Error;
 
-    /// Number of states `n`.
-    fn states(&self) -> usize;
+    /// How many states, noises and outputs there are: the same in every call.
+    fn dimensions(&self) -> Dimensions;
 
-    /// Number of leading states that move or are driven by noise.
-    fn leading(&self) -> usize;
-
-    /// Number of noise sources `k` of a transition; by default one for each leading state.
-    fn noises(&self) -> usize {
-        self.leading()
+    /// [`Dimensions::states`].
+    fn states(&self) -> usize {
+        self.dimensions().states
     }
 
-    /// Number of outputs.
-    fn outputs(&self) -> usize;
+    /// [`Dimensions::leading`].
+    fn leading(&self) -> usize {
+        self.dimensions().leading
+    }
+
+    /// [`Dimensions::noises`].
+    fn noises(&self) -> usize {
+        self.dimensions().noises
+    }
+
+    /// [`Dimensions::outputs`].
+    fn outputs(&self) -> usize {
+        self.dimensions().outputs
+    }
 
     /// Advance `x` by `dt_s`, s; where `linear` is given, also write the transition's linearisation.
     ///

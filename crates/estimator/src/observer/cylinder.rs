@@ -22,7 +22,7 @@ use nalgebra::DMatrix;
 use super::settings::ObserverSettings;
 use super::states::States;
 use crate::EstimatorError;
-use crate::filter::{Linearisation, Plant, StateSpace, StepMemory, StepTransition, Steps};
+use crate::filter::{Dimensions, Linearisation, Plant, StateSpace, StepMemory, StepTransition, Steps};
 use crate::sensor::Sensor;
 use crate::thermal::reduced::{ReducedModel, Unknowns, WarmStart};
 use crate::thermal::vessel::Vessel;
@@ -339,20 +339,13 @@ impl Divided {
 impl StateSpace for Cylinder {
     type Error = EstimatorError;
 
-    fn states(&self) -> usize {
-        self.states.count()
-    }
-
-    fn leading(&self) -> usize {
-        self.states.leading
-    }
-
-    fn noises(&self) -> usize {
-        self.states.leading
-    }
-
-    fn outputs(&self) -> usize {
-        self.sensors.len()
+    fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            states: self.states.count(),
+            leading: self.states.leading,
+            noises: self.states.leading,
+            outputs: self.sensors.len(),
+        }
     }
 
     fn propagate(

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 use cylwatch_estimator::consistency::{
     EnsembleNees, Finding, NisAccumulator, RunConsistency, Significance, Whiteness, normalised_error_squared,
 };
-use cylwatch_estimator::filter::{ExtendedKalman, Linearisation, StateSpace, UdFactors};
+use cylwatch_estimator::filter::{Dimensions, ExtendedKalman, Linearisation, StateSpace, UdFactors};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -34,20 +34,8 @@ impl Row {
 impl StateSpace for Row {
     type Error = Infallible;
 
-    fn states(&self) -> usize {
-        STATES
-    }
-
-    fn leading(&self) -> usize {
-        STATES
-    }
-
-    fn noises(&self) -> usize {
-        STATES
-    }
-
-    fn outputs(&self) -> usize {
-        2
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: STATES, leading: STATES, noises: STATES, outputs: 2 }
     }
 
     fn propagate(

@@ -1,7 +1,7 @@
 //! A linear process that costs next to nothing: what is left is the filter.
 use std::convert::Infallible;
 
-use cylwatch_estimator::filter::{Linearisation, StateSpace};
+use cylwatch_estimator::filter::{Dimensions, Linearisation, StateSpace};
 use nalgebra::DMatrix;
 
 /// A dense, stable process with constant matrices, whatever the interval. It does not allocate in a step.
@@ -36,20 +36,13 @@ impl CopyingModel {
 impl StateSpace for CopyingModel {
     type Error = Infallible;
 
-    fn states(&self) -> usize {
-        self.h.nrows()
-    }
-
-    fn leading(&self) -> usize {
-        self.moved.len()
-    }
-
-    fn noises(&self) -> usize {
-        self.linear.q.len()
-    }
-
-    fn outputs(&self) -> usize {
-        self.h.ncols()
+    fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            states: self.h.nrows(),
+            leading: self.moved.len(),
+            noises: self.linear.q.len(),
+            outputs: self.h.ncols(),
+        }
     }
 
     fn propagate(

@@ -1,7 +1,7 @@
 //! Random linear processes and their textbook filter in dense matrices: what the filters are compared with.
 use std::convert::Infallible;
 
-use cylwatch_estimator::filter::{Gate, Linearisation, Plant, StateSpace};
+use cylwatch_estimator::filter::{Dimensions, Gate, Linearisation, Plant, StateSpace};
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -136,20 +136,13 @@ impl LinearModel {
 impl StateSpace for LinearModel {
     type Error = Infallible;
 
-    fn states(&self) -> usize {
-        self.a.nrows()
-    }
-
-    fn leading(&self) -> usize {
-        self.leading
-    }
-
-    fn noises(&self) -> usize {
-        self.leading
-    }
-
-    fn outputs(&self) -> usize {
-        self.h.nrows()
+    fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            states: self.a.nrows(),
+            leading: self.leading,
+            noises: self.leading,
+            outputs: self.h.nrows(),
+        }
     }
 
     fn propagate(

@@ -3,7 +3,7 @@ use std::convert::Infallible;
 use super::windowed::Windowed;
 use super::*;
 use crate::filter::horizon::HorizonSettings;
-use crate::filter::{Gate, Linearisation, Outcome, StateSpace};
+use crate::filter::{Dimensions, Gate, Linearisation, Outcome, StateSpace};
 
 /// A level that walks and is read with an offset; a member supposes how fast it walks, variance per second.
 #[derive(Clone, Debug)]
@@ -14,20 +14,8 @@ struct Level {
 impl StateSpace for Level {
     type Error = Infallible;
 
-    fn states(&self) -> usize {
-        2
-    }
-
-    fn leading(&self) -> usize {
-        1
-    }
-
-    fn noises(&self) -> usize {
-        1
-    }
-
-    fn outputs(&self) -> usize {
-        1
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: 2, leading: 1, noises: 1, outputs: 1 }
     }
 
     fn propagate(

@@ -2,6 +2,7 @@ use approx::assert_relative_eq;
 use nalgebra::DMatrix;
 
 use super::*;
+use crate::filter::Dimensions;
 
 /// A constant seen through outputs `z_0 = x^2`, `z_1 = x`; it refuses to go on beyond `x = 100`.
 #[derive(Clone, Debug)]
@@ -16,20 +17,8 @@ struct Beyond;
 impl StateSpace for Square {
     type Error = Beyond;
 
-    fn states(&self) -> usize {
-        1
-    }
-
-    fn leading(&self) -> usize {
-        1
-    }
-
-    fn noises(&self) -> usize {
-        1
-    }
-
-    fn outputs(&self) -> usize {
-        2
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: 1, leading: 1, noises: 1, outputs: 2 }
     }
 
     fn propagate(

@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::Likelihood;
 use crate::EstimatorError;
-use crate::filter::{Linearisation, StateSpace};
+use crate::filter::{Dimensions, Linearisation, StateSpace};
 use crate::identify::compensation::Variances;
 use crate::identify::parametrisation::Coefficients;
 use crate::identify::propagator::{Propagator, Propagators};
@@ -120,20 +120,9 @@ impl<const N: usize> Process<N> {
 impl<const N: usize> StateSpace for Process<N> {
     type Error = EstimatorError;
 
-    fn states(&self) -> usize {
-        N + 2 + usize::from(self.input_model == InputModel::IntegratedRandomWalk)
-    }
-
-    fn leading(&self) -> usize {
-        self.states()
-    }
-
-    fn noises(&self) -> usize {
-        1 + usize::from(self.input_model == InputModel::IntegratedRandomWalk)
-    }
-
-    fn outputs(&self) -> usize {
-        2
+    fn dimensions(&self) -> Dimensions {
+        let walks = 1 + usize::from(self.input_model == InputModel::IntegratedRandomWalk);
+        Dimensions { states: N + 1 + walks, leading: N + 1 + walks, noises: walks, outputs: 2 }
     }
 
     fn propagate(

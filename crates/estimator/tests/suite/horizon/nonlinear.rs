@@ -2,7 +2,7 @@
 use cylwatch_estimator::filter::horizon::{
     Constraint, HorizonEstimate, HorizonSettings, HorizonStatus, MovingHorizon,
 };
-use cylwatch_estimator::filter::{Linearisation, StateSpace};
+use cylwatch_estimator::filter::{Dimensions, Linearisation, StateSpace};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -41,20 +41,8 @@ impl Pendulum {
 impl StateSpace for Pendulum {
     type Error = std::fmt::Error;
 
-    fn states(&self) -> usize {
-        3
-    }
-
-    fn leading(&self) -> usize {
-        2
-    }
-
-    fn noises(&self) -> usize {
-        1
-    }
-
-    fn outputs(&self) -> usize {
-        1
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: 3, leading: 2, noises: 1, outputs: 1 }
     }
 
     fn propagate(
@@ -223,20 +211,8 @@ struct Curve {
 impl StateSpace for Curve {
     type Error = std::fmt::Error;
 
-    fn states(&self) -> usize {
-        1
-    }
-
-    fn leading(&self) -> usize {
-        1
-    }
-
-    fn noises(&self) -> usize {
-        0
-    }
-
-    fn outputs(&self) -> usize {
-        1
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: 1, leading: 1, noises: 0, outputs: 1 }
     }
 
     fn propagate(

@@ -6,7 +6,7 @@ use cylwatch_estimator::EstimatorError;
 use cylwatch_estimator::filter::horizon::{
     Constraint, FallbackReason, HorizonError, HorizonSettings, HorizonStatus, Loss, MovingHorizon,
 };
-use cylwatch_estimator::filter::{Linearisation, StateSpace};
+use cylwatch_estimator::filter::{Dimensions, Linearisation, StateSpace};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -186,20 +186,8 @@ enum Mood {
 impl StateSpace for Moody {
     type Error = std::fmt::Error;
 
-    fn states(&self) -> usize {
-        1
-    }
-
-    fn leading(&self) -> usize {
-        1
-    }
-
-    fn noises(&self) -> usize {
-        1
-    }
-
-    fn outputs(&self) -> usize {
-        1
+    fn dimensions(&self) -> Dimensions {
+        Dimensions { states: 1, leading: 1, noises: 1, outputs: 1 }
     }
 
     fn propagate(

@@ -1,7 +1,7 @@
 //! Linear estimation problems, drawn at random or written down.
 use std::convert::Infallible;
 
-use cylwatch_estimator::filter::{Linearisation, StateSpace};
+use cylwatch_estimator::filter::{Dimensions, Linearisation, StateSpace};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -83,20 +83,13 @@ impl Linear {
 impl StateSpace for Linear {
     type Error = Infallible;
 
-    fn states(&self) -> usize {
-        self.a.ncols()
-    }
-
-    fn leading(&self) -> usize {
-        self.a.nrows()
-    }
-
-    fn noises(&self) -> usize {
-        self.q.len()
-    }
-
-    fn outputs(&self) -> usize {
-        self.r.len()
+    fn dimensions(&self) -> Dimensions {
+        Dimensions {
+            states: self.a.ncols(),
+            leading: self.a.nrows(),
+            noises: self.q.len(),
+            outputs: self.r.len(),
+        }
     }
 
     fn propagate(

@@ -36,21 +36,16 @@ pub(super) fn draw(span: &Span) -> Weather {
     };
     let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (rest, sky_k) = (random.uniform((3.0, 8.0)), random.uniform((4.0, 10.0)));
+    let unrest = Unrest { turbulence_k: 0.3, gust: 0.2, difference_k: 0.5 };
     Weather {
-        outside: outside.draw(span),
-        inside: None,
         stays: garage.draw(span),
         film: Film::Wind,
-        rest,
         rest_variation: 0.6,
-        trips: Vec::new(),
         sun: sun.draw(span),
         daylight_s: DAYLIGHT_S,
         lit: (0.3, 1.0, true),
         radiation_lag_s: 60.0 * MINUTE_S,
         sky_k,
-        unrest: Unrest { turbulence_k: 0.3, gust: 0.2, difference_k: 0.5 },
-        jumps_s: Vec::new(),
-        heated_s: Vec::new(),
+        ..Weather::sheltered(outside.draw(span), rest, unrest)
     }
 }

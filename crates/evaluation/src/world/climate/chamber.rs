@@ -6,7 +6,7 @@
 use super::Span;
 use super::part::Polyline;
 use super::unrest::Unrest;
-use super::weather::{Film, Weather};
+use super::weather::Weather;
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
 use crate::world::chamber::Chamber;
@@ -46,21 +46,6 @@ fn programme(span: &Span) -> (Polyline, Vec<f64>) {
 
 pub(super) fn draw(span: &Span) -> Weather {
     let (air, jumps_s) = programme(span);
-    Weather {
-        outside: any_season().draw(span),
-        inside: Some(air),
-        stays: Vec::new(),
-        film: Film::Coefficient,
-        rest: 16.0,
-        rest_variation: 0.0,
-        trips: Vec::new(),
-        sun: Vec::new(),
-        daylight_s: (8.0 * HOUR_S, 16.0 * HOUR_S),
-        lit: (0.8, 1.0, false),
-        radiation_lag_s: 0.0,
-        sky_k: 0.0,
-        unrest: Unrest { turbulence_k: 0.2, gust: 0.05, difference_k: 0.5 },
-        jumps_s,
-        heated_s: Vec::new(),
-    }
+    let unrest = Unrest { turbulence_k: 0.2, gust: 0.05, difference_k: 0.5 };
+    Weather { inside: Some(air), jumps_s, ..Weather::sheltered(any_season().draw(span), 16.0, unrest) }
 }

@@ -29,21 +29,15 @@ pub(super) fn draw(span: &Span) -> Weather {
     let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (lit_from, rest, sky_k) =
         (random.uniform((0.0, 0.4)), random.uniform((1.0, 3.0)), random.uniform((5.0, 12.0)));
+    let unrest = Unrest { turbulence_k: 0.6, gust: 0.2, difference_k: 1.0 };
     Weather {
-        outside: outside.draw(span),
-        inside: None,
-        stays: Vec::new(),
         film: Film::Wind,
-        rest,
         rest_variation: 0.5,
-        trips: Vec::new(),
         sun: sun.draw(span),
         daylight_s: DAYLIGHT_S,
         lit: (lit_from, 1.0, true),
         radiation_lag_s: 60.0 * MINUTE_S,
         sky_k,
-        unrest: Unrest { turbulence_k: 0.6, gust: 0.2, difference_k: 1.0 },
-        jumps_s: Vec::new(),
-        heated_s: Vec::new(),
+        ..Weather::sheltered(outside.draw(span), rest, unrest)
     }
 }

@@ -7,7 +7,7 @@ use super::Span;
 use super::draw::TunnelLaw;
 use super::part::{Polyline, StayAir};
 use super::unrest::Unrest;
-use super::weather::{Film, Weather};
+use super::weather::Weather;
 use super::workshop::any_season;
 use crate::random::{Purpose, Random};
 use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};
@@ -61,21 +61,13 @@ pub(super) fn draw(span: &Span) -> Weather {
         flow: Some(((6.0, 12.0), (5.0, 60.0))),
     };
     let (air, heated_s) = heated(span);
+    let unrest = Unrest { turbulence_k: 0.1, gust: 0.15, difference_k: 1.0 };
     Weather {
-        outside: any_season().draw(span),
         inside: Some(air),
         stays: doors.draw(span),
-        film: Film::Coefficient,
-        rest: 4.0,
         rest_variation: 0.1,
-        trips: Vec::new(),
-        sun: Vec::new(),
-        daylight_s: (8.0 * HOUR_S, 16.0 * HOUR_S),
-        lit: (0.8, 1.0, false),
         radiation_lag_s: 2.0 * HOUR_S,
-        sky_k: 0.0,
-        unrest: Unrest { turbulence_k: 0.1, gust: 0.15, difference_k: 1.0 },
-        jumps_s: Vec::new(),
         heated_s,
+        ..Weather::sheltered(any_season().draw(span), 4.0, unrest)
     }
 }

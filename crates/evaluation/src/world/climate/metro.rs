@@ -5,8 +5,7 @@
 use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TripLaw, TunnelLaw};
 use super::part::StayAir;
-use super::railway::DAYLIGHT_S;
-use super::unrest::Unrest;
+use super::railway::{DAYLIGHT_S, UNREST};
 use super::weather::{Film, Weather};
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
@@ -43,20 +42,14 @@ pub(super) fn draw(span: &Span) -> Weather {
         shade_s: (60.0 * MINUTE_S, 240.0 * MINUTE_S),
     };
     Weather {
-        outside: outside.draw(span),
-        inside: None,
         stays: tunnels.draw(span),
         film: Film::Wind,
-        rest: 0.3,
         rest_variation: 0.5,
         trips: trips.draw(span),
         sun: sun.draw(span),
         daylight_s: DAYLIGHT_S,
         lit: (0.8, 1.0, true),
         radiation_lag_s: 30.0 * MINUTE_S,
-        sky_k: 0.0,
-        unrest: Unrest { turbulence_k: 0.4, gust: 0.1, difference_k: 0.5 },
-        jumps_s: Vec::new(),
-        heated_s: Vec::new(),
+        ..Weather::sheltered(outside.draw(span), 0.3, UNREST)
     }
 }

@@ -22,21 +22,15 @@ pub(super) fn draw(span: &Span) -> Weather {
     let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (lit_from, rest, sky_k) =
         (random.uniform((0.2, 0.8)), random.uniform((1.0, 3.0)), random.uniform((2.0, 8.0)));
+    let unrest = Unrest { turbulence_k: 0.4, gust: 0.2, difference_k: 0.5 };
     Weather {
-        outside: any_season().draw(span),
-        inside: None,
-        stays: Vec::new(),
         film: Film::Wind,
-        rest,
         rest_variation: 0.7,
-        trips: Vec::new(),
         sun: sun.draw(span),
         daylight_s: DAYLIGHT_S,
         lit: (lit_from, 1.0, true),
         radiation_lag_s: 45.0 * MINUTE_S,
         sky_k,
-        unrest: Unrest { turbulence_k: 0.4, gust: 0.2, difference_k: 0.5 },
-        jumps_s: Vec::new(),
-        heated_s: Vec::new(),
+        ..Weather::sheltered(any_season().draw(span), rest, unrest)
     }
 }

@@ -7,7 +7,7 @@ use super::Span;
 use super::draw::{OutsideLaw, SunLaw, TunnelLaw};
 use super::part::StayAir;
 use super::unrest::Unrest;
-use super::weather::{Film, Weather};
+use super::weather::Weather;
 use crate::random::{Purpose, Random};
 use cylwatch_thermal::units::{DAY_S, HOUR_S, MINUTE_S};
 
@@ -39,21 +39,15 @@ pub(super) fn draw(span: &Span) -> Weather {
     let random = &mut Random::new(span.seed, Purpose::WorldSite);
     let (rest, sky_k, lit_from) =
         (random.uniform((4.0, 10.0)), random.uniform((2.0, 8.0)), random.uniform((0.0, 0.7)));
+    let unrest = Unrest { turbulence_k: 0.4, gust: 0.2, difference_k: 0.5 };
     Weather {
-        outside: outside.draw(span),
-        inside: None,
         stays: showers.draw(span),
-        film: Film::Coefficient,
-        rest,
         rest_variation: 0.3,
-        trips: Vec::new(),
         sun: sun.draw(span),
         daylight_s: DAYLIGHT_S,
         lit: (lit_from, 1.0, true),
         radiation_lag_s: 45.0 * MINUTE_S,
         sky_k,
-        unrest: Unrest { turbulence_k: 0.4, gust: 0.2, difference_k: 0.5 },
-        jumps_s: Vec::new(),
-        heated_s: Vec::new(),
+        ..Weather::sheltered(outside.draw(span), rest, unrest)
     }
 }

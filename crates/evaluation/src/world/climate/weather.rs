@@ -5,7 +5,7 @@
 //! lag, less what a clear sky takes away. All signals are linear between the same knots.
 use cylwatch_thermal::ThermalError;
 use cylwatch_thermal::scenario::{AxialVariation, OutsideFilm, Series, Sun, Surroundings};
-use cylwatch_thermal::units::{DAY_S, ZERO_CELSIUS_K};
+use cylwatch_thermal::units::{DAY_S, HOUR_S, ZERO_CELSIUS_K};
 
 use super::Span;
 use super::part::{Outside, Polyline, Stay, Trapezoid, sum_at};
@@ -62,6 +62,27 @@ struct Sky {
 }
 
 impl Weather {
+    /// Air of a place that knows neither sun, sky, trips nor stays: its film at rest, W/(m² K), and its unrest.
+    pub(super) fn sheltered(outside: Outside, rest: f64, unrest: Unrest) -> Self {
+        Self {
+            outside,
+            inside: None,
+            stays: Vec::new(),
+            film: Film::Coefficient,
+            rest,
+            rest_variation: 0.0,
+            trips: Vec::new(),
+            sun: Vec::new(),
+            daylight_s: (8.0 * HOUR_S, 16.0 * HOUR_S),
+            lit: (0.8, 1.0, false),
+            radiation_lag_s: 0.0,
+            sky_k: 0.0,
+            unrest,
+            jumps_s: Vec::new(),
+            heated_s: Vec::new(),
+        }
+    }
+
     /// Stays that can be felt at a time.
     fn stay_at(&self, t_s: f64) -> Option<&Stay> {
         let next = self.stays.partition_point(|stay| stay.enter_s <= t_s);

@@ -5,7 +5,7 @@ use super::Span;
 use super::draw::{OutsideLaw, Range};
 use super::part::Polyline;
 use super::unrest::Unrest;
-use super::weather::{Film, Weather};
+use super::weather::Weather;
 use crate::random::{OrnsteinUhlenbeck, Purpose, Random};
 use cylwatch_thermal::units::{HOUR_S, MINUTE_S};
 
@@ -33,21 +33,11 @@ pub(super) fn draw(span: &Span) -> Weather {
     let process = OrnsteinUhlenbeck::draw(&mut random, TIME_S, STEP_S, end_s);
     let time_s: Vec<f64> = (0..=(end_s / STEP_S) as usize).map(|step| step as f64 * STEP_S).collect();
     let value = time_s.iter().map(|&t| set_degc + (SD_K * process.at(t)).clamp(-BAND_K, BAND_K)).collect();
+    let unrest = Unrest { turbulence_k: 0.05, gust: 0.1, difference_k: 0.2 };
     Weather {
-        outside: any_season().draw(span),
         inside: Some(Polyline { time_s, value }),
-        stays: Vec::new(),
-        film: Film::Coefficient,
-        rest: 3.5,
         rest_variation: 0.1,
-        trips: Vec::new(),
-        sun: Vec::new(),
-        daylight_s: (8.0 * HOUR_S, 16.0 * HOUR_S),
-        lit: (0.8, 1.0, false),
         radiation_lag_s: 2.0 * HOUR_S,
-        sky_k: 0.0,
-        unrest: Unrest { turbulence_k: 0.05, gust: 0.1, difference_k: 0.2 },
-        jumps_s: Vec::new(),
-        heated_s: Vec::new(),
+        ..Weather::sheltered(any_season().draw(span), 3.5, unrest)
     }
 }
