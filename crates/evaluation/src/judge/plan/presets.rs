@@ -14,6 +14,7 @@ pub const FILES: Presets = Presets {
         ("losses", include_str!("../../../plans/losses.toml")),
         ("fault", include_str!("../../../plans/fault.toml")),
         ("years", include_str!("../../../plans/years.toml")),
+        ("metros", include_str!("../../../plans/metros.toml")),
         ("tails", include_str!("../../../plans/tails.toml")),
         ("likelihood", include_str!("../../../plans/likelihood.toml")),
         ("smoke", include_str!("../../../plans/smoke.toml")),
