@@ -121,8 +121,9 @@ impl<const N: usize> StateSpace for Process<N> {
     type Error = EstimatorError;
 
     fn dimensions(&self) -> Dimensions {
-        let walks = 1 + usize::from(self.input_model == InputModel::IntegratedRandomWalk);
-        Dimensions { states: N + 1 + walks, leading: N + 1 + walks, noises: walks, outputs: 2 }
+        let noises = 1 + usize::from(self.input_model == InputModel::IntegratedRandomWalk);
+        let states = N + 1 + noises;
+        Dimensions { states, leading: states, noises, outputs: 2 }
     }
 
     fn propagate(
